@@ -569,3 +569,14 @@ def test_a_probe_in_a_wall_is_warned_of(tmp_path, place, told):
         assert all("lies in a wall, where there is no fluid to measure" in line for line in lines)
     foot = "gauges.H.level={ foot = [0.5, -0.2], top = [0.5, 0.7] }"
     assert checked(tmp_path, TANK, foot) == []  # a line may begin in the floor
+
+
+def test_a_run_up_off_every_slope_is_warned_of(tmp_path):
+    gauge = "gauges.tongue.run_up={{foot=[0.2, {}], top=[0.9, 0.6]}}"
+    says = "gauges.tongue.run_up.foot: [0.2, 0.5] lies off every wall, body and bed"
+    assert any(says in line for line in check(Scene(draft(tmp_path, TANK, gauge.format(0.5)))))
+    assert not any("lies off" in line for line in check(Scene(draft(tmp_path, TANK, gauge.format(0.0)))))
+    shelf = "walls.shelf={displaces=true, shape={box={lower=[0.1, 0.3], upper=[0.5, 0.5]}}}"
+    assert not any(
+        "lies off" in line for line in check(Scene(draft(tmp_path, TANK, gauge.format(0.5), shelf)))
+    )

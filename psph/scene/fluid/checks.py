@@ -10,7 +10,7 @@ from psph.scene.fluid.rheologies import rheology_warnings
 from psph.scene.fluid.slips import slips
 from psph.scene.fluid.start_checks import driven_flow, effect_warnings, start_warnings
 from psph.scene.fluid.zones import zones_off_the_fluid
-from psph.scene.gauging import gauge_warnings, inside_walls
+from psph.scene.gauging import gauge_warnings, inside_walls, within_reach
 from psph.scene.lattice import TOLERANCE
 from psph.scene.pressureless_walls import unbearing_warnings
 from psph.scene.scene import Scene
@@ -89,6 +89,19 @@ def _slow_sound(scene: Scene) -> Iterator[str]:
         )
 
 
+def _off_slopes(scene: Scene) -> Iterator[str]:
+    """A line for each run-up whose foot is near nothing that water may run up."""
+    slopes = [part.name for part in scene.layout.parts if part.name not in scene.case.fluids]
+    for name, gauge in scene.case.gauges.items():
+        if gauge.run_up is None or scene.layout.mirror_planes:  # a mirror has no particles
+            continue
+        if not any(within_reach(scene, slopes, gauge.run_up.foot)):
+            yield (
+                f"gauges.{name}.run_up.foot: {shown(gauge.run_up.foot)} lies off every wall, body and bed, "
+                "and water counts within two spacings of the line alone; let the line lie on the slope"
+            )
+
+
 def _tables(scene: Scene) -> list:
     """What the case says of each part that flows."""
     return [part.table for part in scene.layout.parts if part.flows]
@@ -107,6 +120,7 @@ ALL = (
     unbearing_warnings,
     inside_walls,
     gauge_warnings,
+    _off_slopes,
     several_fluids,
     slips,
     rheology_warnings,
