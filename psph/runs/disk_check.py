@@ -16,12 +16,12 @@ class TooLittleDisk(Refused):
 def check_disk(scene, plan: Plan, folder: Path, comm, begun: float = 0.0) -> None:
     """Raise TooLittleDisk on every rank where what a run writes from ``begun`` (s) on does not fit.
 
-    Frames and checkpoints count; an earlier run that this one replaces counts as free.  Rank 0 looks.
+    Frames and checkpoints count; what stands there and will be replaced counts as free.  Rank 0 looks.
     """
     said = ""
     if comm.rank == 0:
         needed = bytes_of_run(scene, plan, forecast(scene, plan, comm.size).steps, begun)
-        free = _free(folder) + (0 if begun else _replaced(folder))
+        free = _free(folder) + _replaced(folder, "checkpoint-*.h5" if begun else "*.h5")
         if needed > free:
             said = (
                 f"{scene.case.file}: output.frames: what the run writes takes about {amount(needed)}, and "
@@ -40,6 +40,6 @@ def _free(folder: Path) -> int:
     return shutil.disk_usage(there).free
 
 
-def _replaced(folder: Path) -> int:
-    """Bytes of the frames and checkpoints that stand there now."""
-    return sum(path.stat().st_size for path in folder.glob("*.h5"))
+def _replaced(folder: Path, names: str) -> int:
+    """Bytes of what stands there now and makes room for its like."""
+    return sum(path.stat().st_size for path in folder.glob(names))

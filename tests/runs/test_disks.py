@@ -14,6 +14,7 @@ from psph.case import load
 from psph.output.checkpoint import checkpoints
 from psph.output.errors import OutputError
 from psph.output.reader import Run
+from psph.runs.disk_check import TooLittleDisk
 from psph.runs.start import resume, run
 from psph.runs.watch import Stopped
 
@@ -107,7 +108,7 @@ def test_a_full_disk_is_one_line_and_the_run_goes_on_when_there_is_room(
     assert line.startswith(f"{folder / file}: cannot be written: No space left on device; check")
     assert {path: path.read_bytes() for path in checkpoints(folder)} == before
     assert Run(folder).times[0] == 0.0  # what was written can still be read
-    with pytest.raises(OutputError, match="No space left on device; check the folder, its perm"):
+    with pytest.raises(TooLittleDisk, match="are free in .*: make space"):
         resume(folder, COMM, say=quiet)
     assert {path: path.read_bytes() for path in checkpoints(folder)} == before
     ballast.unlink()
