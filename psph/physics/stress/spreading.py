@@ -66,29 +66,56 @@ def of_one_soil(i, j):
     return where(weaker > 0.0, 1.0, 0.0) * where(stronger > weaker, 0.0, 1.0)
 
 
+@helper
+def of_level_ground(level, i, j, pair):
+    """s⁰(x_i) − s⁰(x_j), Pa: what weight asks of level ground at rest."""
+    loosely = 1.0 - 0.5 * (i.rest_coefficient + j.rest_coefficient)
+    depth = 0.5 * (i.rest_density + j.rest_density) * loosely * dot(pair.x_ij, level[0])
+    return scale(level[1], depth)
+
+
+@helper
+def of_slopes(i, j, pair):
+    """½(∇s_i + ∇s_j)·x_ij, Pa."""
+    return scale(slopes_along(add(i.stress_slopes, j.stress_slopes), pair.x_ij), 0.5)
+
+
+class LevelGround(NamedTuple):
+    """The stress of level ground at rest stays, and no other: of soils with water in their pores."""
+
+    def smooth(self, level, i, j, pair):
+        """What stays of s_i − s_j, Pa."""
+        return of_level_ground(level, i, j, pair)
+
+
 class AnyOrder(NamedTuple):
     """All that is smooth stays."""
 
-    def kept(self, i, j):
-        """Its part that stays, 0 to 1."""
-        return 1.0
+    def smooth(self, level, i, j, pair):
+        """What stays of s_i − s_j, Pa."""
+        return of_slopes(i, j, pair)
 
 
 class SeenOrder(NamedTuple):
     """What is smooth stays where particles are in order, as
-    :class:`psph.physics.fluid.correction.GradientCorrection` sees it: soil that flows is in disorder."""
+    :class:`psph.physics.fluid.correction.GradientCorrection` sees it; in disorder, of soil that flows, and at
+    surfaces that of level ground."""
 
-    def kept(self, i, j):
-        """Its part that stays, 0 to 1."""
-        return 1.0 - half_disorder(ROUGH, i) - half_disorder(ROUGH, j)
+    def smooth(self, level, i, j, pair):
+        """What stays of s_i − s_j, Pa."""
+        share = 1.0 - half_disorder(ROUGH, i) - half_disorder(ROUGH, j)
+        known = scale(of_level_ground(level, i, j, pair), 1.0 - share)
+        return add(scale(of_slopes(i, j, pair), share), known)
 
 
-kept = call_by_type("kept")
-"""(order, i, j) → the part of what is smooth between two particles that stays, 0 to 1."""
+smooth = call_by_type("smooth")
+"""(order, level, i, j, pair) → what stays of the difference of the stresses of two particles, Pa."""
 
 
 def order_of(scene: Facts):
     """How a scene tells order: by the type of its answer the loops are compiled."""
+    if any(getattr(law, "pores", 0.0) for law in scene.strengths):
+        return LevelGround()
     return AnyOrder() if scene.physics.gradient_correction is None else SeenOrder()
 
 
@@ -102,15 +129,9 @@ def levelled(scene: Facts):
 
 @helper
 def spread(order, level, i, j, pair):
-    """2δhc V_j W′/r [s_i − s_j − k ½(∇s_i + ∇s_j)·x_ij − (1 − k)(s⁰(x_i) − s⁰(x_j))], Pa/s, between those of
-    one soil: k of what is smooth stays, and of the rest s⁰, what weight asks of level ground."""
+    """2δhc V_j W′/r [s_i − s_j less what is smooth of it], Pa/s, between particles of one soil."""
     mixing = (i.stress_diffusion + j.stress_diffusion) * i.smoothing_length * i.sound_speed
-    share = kept(order, i, j)
-    smooth = scale(slopes_along(add(i.stress_slopes, j.stress_slopes), pair.x_ij), 0.5 * share)
-    loosely = 1.0 - 0.5 * (i.rest_coefficient + j.rest_coefficient)
-    depth = 0.5 * (i.rest_density + j.rest_density) * loosely * dot(pair.x_ij, level[0])
-    rough = subtract(subtract(i.deviator, j.deviator), smooth)
-    rough = subtract(rough, scale(level[1], (1.0 - share) * depth))
+    rough = subtract(subtract(i.deviator, j.deviator), smooth(order, level, i, j, pair))
     return scale(rough, of_one_soil(i, j) * mixing * j.specific_volume * pair.m_dw_r)
 
 
@@ -134,10 +155,16 @@ class StressSlopes(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """Where a soil asks for it."""
-        return self if any(one.stress_diffusion for one in scene.species) else None
+        if not any(one.stress_diffusion for one in scene.species):
+            return None
+        return None if isinstance(order_of(scene), LevelGround) else self
 
     def why_absent(self, scene: Facts):
         """What it lacks."""
+        if any(one.stress_diffusion for one in scene.species):
+            return (
+                "there is water in pores of soil, whose stress would drift: that of level ground stays alone"
+            )
         return "no soil has stress_diffusion"
 
     def start(self, i):
