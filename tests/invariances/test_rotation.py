@@ -172,10 +172,12 @@ UNSHIFTED = {
     "drop of mud": 2e-5,
     "drop of two fluids": 2e-5,
     "soil": 2e-4,
-    "body in soil": 1e-3,
+    "body in soil": 5e-4,
 }
 """The same without the shift; measured 2.1e-5, 3e-6, 3e-6, 9e-6, 1.1e-4 and 6.8e-4, where 4e-3 to 7e-3 are with it.
-The last is 2.5e-4 where the whole stress of soil spreads, and so fades beside the body."""
+The last misses its bound: 2.5e-4 where the whole stress of soil spreads, and so fades beside the body."""
+
+MISSED = pytest.param("body in soil", marks=[LONG, pytest.mark.xfail(strict=True, reason="6.8e-4 for 5e-4")])
 
 IN_DRUMS = [
     name
@@ -198,7 +200,7 @@ def test_a_whole_turn_of_everything_moves_nothing_and_keeps_the_angular_momentum
     assert relative < STILL and abs(change) < KEPT[name]
 
 
-@pytest.mark.parametrize("name", long_but_for((), UNSHIFTED))
+@pytest.mark.parametrize("name", [*long_but_for((), [*UNSHIFTED][:-1]), MISSED])
 def test_the_shift_alone_changes_the_angular_momentum(tmp_path, name):
     """And the control: with it an eighth of a quarter changes more than all of a turn without."""
     assert abs(turned(name, tmp_path, 2.0 * np.pi, position_shift="off")[1]) < UNSHIFTED[name]
