@@ -1,6 +1,7 @@
 """Rigid bodies that rest on soil, slide on it, hit it and lie in it."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from invariances.running import begun, by_id
 from long import LONG, tell
 
 from psph.physics.stress import deviator, spreading
+from psph.vectors import zero_like
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -112,12 +114,12 @@ def in_a_tank(density):
     return scene(box([0.0, 0.0], [1.0, 0.6]), block, walls={"tank": wall}, physics={"gravity": [0.0, -G]})
 
 
-class NoOrder(spreading.AnyOrder):
+class NoOrder(NamedTuple):
     """The stress spreads with all that is smooth in it."""
 
-    def kept(self, i, j):
+    def smooth(self, level, i, j, pair):
         """Nothing stays."""
-        return 0.0
+        return zero_like(i.deviator)
 
 
 @LONG
