@@ -31,11 +31,12 @@ TOML = ".toml"
 
 class Readings(NamedTuple):
     """What gauges read on frames: the columns of each by its name, and why others could not be read, a line
-    each; and the ``case`` of the run with all that was asked for."""
+    each; the ``case`` of the run with all that was asked for; and the names of gauges that are ``new``."""
 
     tables: dict[str, dict[str, np.ndarray]]
     refused: tuple[str, ...]
     case: Any
+    new: tuple[str, ...] = ()
 
 
 class _Wanted(NamedTuple):
@@ -79,7 +80,7 @@ def readings(
             break
     if not found.gauges:
         raise MeasureError(found.refused[0])
-    return Readings(found.tables(), tuple(found.refused), asked.case)
+    return Readings(found.tables(), tuple(found.refused), asked.case, asked.new)
 
 
 class _Found:

@@ -247,6 +247,17 @@ def test_new_gauges_and_those_of_a_file(tmp_path, capsys):
     assert not list(folder.glob("measured-*"))
 
 
+def test_a_number_of_a_new_gauge_that_has_a_name_of_the_case(tmp_path, capsys):
+    """It is that of the new one, and not of what the run wrote under this name."""
+    gauge = "mid.highest={{axis='y',shape={{box={{lower=[0.0,0.0],upper=[1.0,{}]}}}}}}"
+    case = draft(tmp_path, TANK, "time.end=0.02", f"gauges.{gauge.format(0.6)}")
+    folder = finished(case, tmp_path / "run")
+    number = ["--number", "most={of='mid.front',take='maximum'}"]
+    assert main(["measure", str(folder), "--gauge", gauge.format(0.3), *number]) == 0
+    low = readings(folder, [gauge.format(0.3)]).tables["mid"]["mid.front"].max()
+    assert low < 0.3 and f"most: maximum of mid.front: {low:.6g} m" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     "gauge, says",
     [
