@@ -9,7 +9,7 @@ from psph.fields import FLUID
 from psph.lab.draw.marks import Mark
 from psph.lab.draw.picture import colour_of
 from psph.lab.draw.start import AtStart
-from psph.lab.report.turning import EYE
+from psph.lab.report.turning import EYE, short
 from psph.output.pictures import style
 from psph.output.pictures.walls import surface
 from psph.scene.layout import Layout
@@ -52,7 +52,7 @@ def _parts(go, layout: Layout, start: AtStart) -> Iterator:
         label = {"name": f"{part.key} ({len(rows):,})", "legendgroup": name, "showlegend": True}
         faces = _faces(layout, number) if not free else None
         if faces is not None:
-            x, y, z = _short(faces.reshape(-1, 3)).T
+            x, y, z = short(faces.reshape(-1, 3)).T
             i, j, k = np.arange(len(x)).reshape(-1, 3).T
             opacity = 0.9 if part.moves_whole else 0.45
             yield go.Mesh3d(
@@ -90,13 +90,7 @@ def _marks(go, dimensions: int, marks: list[Mark]) -> Iterator:
 
 def _scatter(go, places: np.ndarray, **more):
     """Points (n, dim), m, on the axes that there are."""
-    axes = dict(zip(AXES, _short(places).T))
+    axes = dict(zip(AXES, short(places).T))
     axes.setdefault("y", np.zeros(len(places)))
     kind = go.Scatter3d if len(axes) == 3 else go.Scatter
     return kind(**axes, hoverinfo="name+x+y" + "+z" * (len(axes) == 3), **more)
-
-
-def _short(values: np.ndarray) -> np.ndarray:
-    """Six digits: what a screen shows, in fewer bytes."""
-    size = float(np.nanmax(np.abs(values), initial=1e-30))
-    return values.round(max(0, 6 - int(np.ceil(np.log10(size)))))

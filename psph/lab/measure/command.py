@@ -54,7 +54,12 @@ def measure(
         say(line)
     # What the run has written has more rows than there are frames; a new gauge of the same name is another.
     own = {name: table for name, table in run.gauges().items() if name not in found.new}
-    tables = [*(found.tables[name] for name in found.new), run.probes(), *own.values(), *found.tables.values()]
+    tables = [
+        *(found.tables[name] for name in found.new),
+        run.probes(),
+        *own.values(),
+        *found.tables.values(),
+    ]
     asked = {text.partition("=")[0].strip() for text in numbers} or set(case.numbers)
     told = {name: one for name, one in case.numbers.items() if name in asked}
     for line in (*found.refused, *numbers_in_lines(told, tables, case.space.dimensions)):

@@ -39,7 +39,7 @@ def turning(run: Run):
 
     def fluid(k: int):
         places, speed = frames[k]
-        colours = {"color": _short(speed), "cmin": 0.0, "cmax": fastest, "colorscale": "Viridis"}
+        colours = {"color": short(speed), "cmin": 0.0, "cmax": fastest, "colorscale": "Viridis"}
         return _points(kind, places, size, **colours, colorbar={"title": "speed (m/s)"})
 
     def walls(places: np.ndarray):
@@ -92,7 +92,7 @@ def _points(kind, places: np.ndarray, size: int, opacity: float = 1.0, **marker)
 
 def _axes(places: np.ndarray) -> dict[str, np.ndarray]:
     """Places (n, dim) by the names that plotly has for their axes."""
-    axes = {axis: _short(places[:, d]) for d, axis in enumerate(AXES[: places.shape[1]])}
+    axes = {axis: short(places[:, d]) for d, axis in enumerate(AXES[: places.shape[1]])}
     return axes if len(axes) > 1 else {**axes, "y": np.zeros(len(places))}
 
 
@@ -119,18 +119,21 @@ class _Rigid:
         case = tomllib.loads(run.case_text)
         self.has_wholes = bool(wholes_of(case))
         first = first_whole(case) if self.has_wholes else math.inf
-        frames = [run.frame(k, "position", "velocity", "kind", "group") for k in shown]
-        moving = {
-            int(group)
-            for frame in frames
-            for group in np.unique(frame["group"][frame["velocity"].any(axis=1) & (frame["kind"] == WALL)])
-            if group < first
-        }
+        frames = [run.frame(k, "position", "kind", "group", "id") for k in shown]
+        moved = set().union(*(_moved(frames[0], frame) for frame in frames[1:]))
+        moving = {group for group in moved if group < first}
         self.has_moving_walls = bool(moving)
         self.walls = [_chosen(frame, np.isin(frame["group"], [*moving])) for frame in frames]
         self.wholes = [_chosen(frame, frame["group"] >= first) for frame in frames]
         last = frames[-1]["group"]
         self.standing = _chosen(frames[-1], (last < first) & ~np.isin(last, [*moving]))
+
+
+def _moved(before: dict, after: dict) -> set[int]:
+    """The groups of what is rigid and does not stand where it stood."""
+    _, was, now = np.intersect1d(before["id"], after["id"], return_indices=True)
+    away = (before["position"][was] != after["position"][now]).any(axis=1)
+    return set(after["group"][now][away & (after["kind"][now] == WALL)].tolist())
 
 
 def _chosen(frame: dict, these: np.ndarray) -> np.ndarray:
@@ -142,6 +145,10 @@ def _some(rows: np.ndarray, most: int) -> np.ndarray:
     return rows[:: -(-len(rows) // most) or 1]
 
 
-def _short(values: np.ndarray) -> np.ndarray:
-    """Four digits: what a screen shows, in half the bytes."""
-    return values.astype(np.float32).round(4)
+def short(values: np.ndarray) -> np.ndarray:
+    """With five digits of how far they lie apart: what a screen shows, in few bytes."""
+    known = values[np.isfinite(values)]
+    size = float(np.ptp(known) or np.abs(known).max()) if len(known) else 0.0
+    rounded = values.round(5 - math.ceil(math.log10(size))) if size else values
+    half = rounded.astype(np.float32)
+    return half if np.abs(half[np.isfinite(values)] - known).max(initial=0.0) <= 1e-4 * size else rounded

@@ -11,7 +11,7 @@ from jobs import clean_environment
 
 import psph
 from psph.lab.report.sheet import interactive
-from psph.lab.report.turning import turning
+from psph.lab.report.turning import short, turning
 from psph.output.frames import FrameFile
 from psph.output.pictures import style
 from psph.output.reader import Run
@@ -163,6 +163,29 @@ def test_the_view_moves_bodies_and_the_walls_that_the_case_moves(tmp_path):
     shown = [[trace.x.tolist() for trace in frame.data] for frame in figure.frames]
     assert shown == [[[0.0], [2.0], [3.0]], [[0.0], [3.0], [4.0]]]
     assert figure.frames[0].data[2].marker.color == style.WHOLE != figure.frames[0].data[1].marker.color
+
+
+def test_a_gate_that_opens_between_frames_is_where_it_was_in_each(tmp_path):
+    """It rests in all of them, and all is so small and so slow that four decimals would show nothing."""
+    frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": "walls.gate = {}", "dimensions": 2})
+    for k in range(2):
+        cloud = {"id": np.arange(3), "kind": np.array([0, 0, 1], np.uint8), "group": np.zeros(3, np.uint8)}
+        cloud["group"][2] = 1
+        cloud["position"] = np.array([[1.2e-6, 0.0], [3.4e-6, 0.0], [2e-6 + k * 1e-6, 0.0]])
+        cloud["velocity"] = np.array([[1e-7, 0.0], [2e-7, 0.0], [0.0, 0.0]])
+        frames.write(k, 0.1 * k, k, cloud)
+    figure = turning(Run(tmp_path))
+    fluid, gate = zip(*(frame.data for frame in figure.frames))
+    assert [one.x.tolist() for one in gate] == [pytest.approx([2e-6]), pytest.approx([3e-6])]
+    assert fluid[0].x == pytest.approx([1.2e-6, 3.4e-6]) and fluid[0].marker.color == pytest.approx(
+        [1e-7, 2e-7]
+    )
+
+
+def test_what_is_far_away_keeps_its_places():
+    far = 1e6 + np.arange(5) * 0.01
+    assert short(far) == pytest.approx(far, abs=1e-5) and short(far - 1e6).dtype == np.float32
+    assert np.isnan(short(np.array([np.nan, 1.0]))[0]) and short(np.zeros(0)).shape == (0,)
 
 
 @NEEDS_CHROMIUM
