@@ -86,6 +86,14 @@ class Domain:
         """Planes of cells that this rank owns."""
         return int(self.bounds[self.comm.rank + 1] - self.bounds[self.comm.rank])
 
+    def groups(self) -> np.ndarray:
+        """Those of this rank's particles and of its ghosts (total,), which no message of a step carries;
+        collective."""
+        found = self.store.group[: self.store.total].copy()
+        if self.halo is not None:
+            self.halo.carry(found)
+        return found
+
     def rebuild(self, spent: float = 0.0) -> None:
         """Put every particle where it belongs and list its neighbours; collective.
 

@@ -47,6 +47,13 @@ class Halo:
         self.start(names)
         self.finish(names)
 
+    def carry(self, column: np.ndarray) -> None:
+        """Bring a ``column`` (total,) beside the fields, such as the groups, of the ghosts up to date."""
+        for to, of, tag in ((self.below, self.above, DOWNWARD), (self.above, self.below, UPWARD)):
+            sides = ("send_below", "receive_above") if tag == DOWNWARD else ("send_above", "receive_below")
+            sent, got = (column[first : first + n] for first, n in (self._slices[side] for side in sides))
+            self.comm.Sendrecv(sent, to, tag, got, of, tag)
+
     def bytes(self, names: tuple[str, ...]) -> int:
         """Bytes that this rank sends in one refresh of these fields."""
         rows = sum(len(self.store.rows[name]) for name in names)

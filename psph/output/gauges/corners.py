@@ -87,8 +87,9 @@ class Corners:
     def _near_others(self, simulation, space: "_Torus", parts: np.ndarray):
         """Ids in order, groups and places of what is near where parts meet, and whether it is there."""
         comm, store = simulation.comm, simulation.store
-        here = np.flatnonzero(parts[store.group[: store.total]])
-        groups = store.group[here]
+        every = simulation.domain.groups()
+        here = np.flatnonzero(parts[every])
+        groups = every[here]
         places = np.column_stack([x[here] for x in store["position"]])
         places = space.wrapped(places - simulation.domain.lower)
         owned = (here >= store.low) & (here < store.low + store.owned)
