@@ -15,7 +15,8 @@ class Word(str):
 
     ``single`` is one of it.  It ``flows`` where its particles move freely and find their neighbours in space;
     else it is ``bonded`` where they do and keep those of the start, and ``whole`` where forces move it as a
-    whole.  It is ``stressed`` where it flows and bears a stress that evolves.
+    whole.  It is ``stressed`` where it flows and bears a stress that evolves.  It is ``sized`` where its
+    particles move freely and each has a smoothing length of its own.
     """
 
     single: str
@@ -23,6 +24,7 @@ class Word(str):
     bonded: bool
     whole: bool
     stressed: bool
+    sized: bool
 
     def __new__(
         cls,
@@ -33,10 +35,11 @@ class Word(str):
         bonded: bool = False,
         whole: bool = False,
         stressed: bool = False,
+        sized: bool = False,
     ):
         made = super().__new__(cls, word)
         made.single, made.flows, made.bonded, made.whole = single, flows, bonded, whole
-        made.stressed = stressed
+        made.stressed, made.sized = stressed, sized
         return made
 
 
@@ -44,16 +47,21 @@ FLUIDS = Word("fluids", "fluid", flows=True)
 SOILS = Word("soils", "soil", flows=True, stressed=True)
 UPDATED = Word("updated Lagrangian solids", "updated", flows=True, stressed=True)
 SOLIDS = Word("solids", "solid", bonded=True)
+IDEAL_GASES = Word("ideal gases", "ideal gas", sized=True)
 BODIES = Word("rigid bodies", "body", whole=True)
 
-MATTER = (FLUIDS, SOILS, UPDATED, SOLIDS, BODIES)
-"""Kinds of matter: what flows, elastic solids that keep their neighbours of the start, and what is rigid."""
+MATTER = (FLUIDS, SOILS, UPDATED, SOLIDS, IDEAL_GASES, BODIES)
+"""Kinds of matter: what flows, elastic solids that keep their neighbours of the start, ideal gases, and what
+is rigid."""
 
 FLOWING = tuple(one for one in MATTER if one.flows)
 """What shares one pair loop."""
 
 BONDED = tuple(one for one in MATTER if one.bonded)
 """What has passes of its own over its neighbours of the start."""
+
+SIZED = tuple(one for one in MATTER if one.sized)
+"""What has a smoothing length for each particle, and a pair loop by itself."""
 
 WHOLE = tuple(one for one in MATTER if one.whole)
 """What is pushed as a whole."""

@@ -27,12 +27,12 @@ def indices(dimensions: int) -> dict[str, list[tuple[int, ...]]]:
     }
 
 
-FLUID, WALL, SOLID, OTHER, BUFFER = 0, 1, 2, 3, 4
+FLUID, WALL, SOLID, OTHER, BUFFER, GAS = 0, 1, 2, 3, 4, 5
 """Values of ``kind``: a fluid particle moves freely, a wall particle does not, a solid one is held by its
 neighbours of the start, another one is moved by the work of a kind of matter (psph.kinds), that of a buffer
-is fluid behind an open end."""
+is fluid behind an open end, one of an ideal gas has a smoothing length of its own."""
 
-KINDS = ("fluid", "wall", "solid", "other", "buffer")
+KINDS = ("fluid", "wall", "solid", "other", "buffer", "ideal gas")
 """Their names, in this order."""
 
 
@@ -225,7 +225,12 @@ per the same."""
 
 IDENTITY = (
     Field("id", "1", "number of the particle, unique and constant", saved=True),
-    Field("kind", "1", "0 fluid, 1 wall, 2 elastic solid, 3 other, 4 buffer of an open end", saved=True),
+    Field(
+        "kind",
+        "1",
+        "0 fluid, 1 wall, 2 elastic solid, 3 other, 4 buffer of an open end, 5 ideal gas",
+        saved=True,
+    ),
     Field("group", "1", "number of its fluid, solid or wall, in the order of the case", saved=True),
 )
 """Whole numbers that stand beside the fields."""
@@ -273,10 +278,10 @@ APART = _fixed(
 )
 
 OF_SCENE = (
-    _fixed("smoothing_length", "m", "smoothing length h"),
+    Field("smoothing_length", "m", "smoothing length h", saved=True, image=Same),
     _fixed("largest_speed", "m/s", "largest speed of any fluid particle, a step old; for displacements"),
 )
-"""What all particles of a scene share; formulas read it like a field."""
+"""What all particles of a scene share; formulas read it like a field.  In a gas h is one of each particle."""
 
 
 def by_name(*groups: Iterable[Field]) -> dict[str, Field]:

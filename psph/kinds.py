@@ -15,6 +15,7 @@ CATALOGUE = (
     "psph.matter.soil:Soils",
     "psph.matter.solid:UpdatedSolids",
     "psph.matter.solid:ElasticSolids",
+    "psph.matter.gas:IdealGases",
     "psph.matter.fluid:Fluids",
     "psph.matter.body:RigidBodies",
     "psph.matter.wall:Walls",
@@ -125,8 +126,7 @@ class Work:
         return 0.0, 0.0
 
     def overlapping(self, store: Any, depth: float) -> np.ndarray | None:
-        """Above 0 for each of the ``store`` (owned,) that is more than ``depth`` spacings inside what it must
-        not enter; None: none is on any rank."""
+        """Above 0 for each of the ``store`` (owned,) over ``depth`` spacings inside others; None: nowhere."""
         return None
 
     def overlap_words(self, number: int, key: str) -> str:
@@ -191,6 +191,8 @@ class Kind:
     """Fields of frames that only such matter has (psph.fields.Field), whatever of it a scene has."""
     keeps_energy: ClassVar[bool] = True
     """Whether the energy of a scene with it is all in the books, so that a guard can watch it."""
+    is_stiff: ClassVar[bool] = True
+    """Whether density and speed stay near those at rest, so that guards can watch them."""
 
     pushes_within: ClassVar[bool] = False
     """Whether its work pushes its particles itself, beside the effects."""
@@ -210,8 +212,7 @@ class Kind:
 
     @classmethod
     def motion_of(cls, layout: Any, part: Any) -> Any:
-        """How a part of a layout moves that forces move as a whole, by its sites (psph.physics.motion); None:
-        it is none of its own."""
+        """How a part moves that forces move as a whole, by its sites (psph.physics.motion); None: not its."""
         return None
 
     @classmethod
@@ -221,26 +222,22 @@ class Kind:
 
     @classmethod
     def has_free_surface(cls, census: Any) -> bool:
-        """Whether it has a free surface at the start or can have one, by the second value of a scene
-        (psph.scene.census)."""
+        """Whether it has a free surface at the start or can have one (psph.scene.census)."""
         return False
 
     @classmethod
     def driven_speed(cls, census: Any) -> float:
-        """The most that gravity along periodic axes, or what drives it else, can make of its speed by the end
-        of the run, m/s."""
+        """The largest speed, m/s, that gravity along periods, or what drives it else, gives it by the end."""
         return 0.0
 
     @classmethod
     def creeping_speed(cls, census: Any) -> float:
-        """The speed that sets that of sound where gravity along periodic axes drives it slowly, or tension
-        pulls at it, m/s."""
+        """The speed, m/s, that sets that of sound where gravity along periods or tension drives it slowly."""
         return 0.0
 
     @classmethod
     def materials(cls, speeds: Any) -> Any:
-        """What its parts are made of, for its own rooms, by the third value of a scene (psph.scene.speeds);
-        None: what their tables say."""
+        """What its parts are made of, by psph.scene.speeds, for its own rooms; None: what tables say."""
         return None
 
     @classmethod
@@ -288,6 +285,11 @@ class Kind:
         return ()
 
     @property
+    def sizes(self) -> Any:
+        """How far its particles reach, each by its own smoothing length (psph.particles.sizes); or None."""
+        return None
+
+    @property
     def moves(self) -> bool:
         """Whether its work moves particles itself, beside the kick of what is free."""
         return False
@@ -299,8 +301,7 @@ class Kind:
 
     @property
     def bears_midway(self) -> bool:
-        """Whether the rate of density may be summed at the middle of a step (psph.simulation.midway): its
-        particles stand there too, since they move by rates of the engine or by poses."""
+        """Whether the rate of density may be summed at mid-step (psph.simulation.midway): it stands there."""
         return False
 
     @property
@@ -346,8 +347,7 @@ class Kind:
         yield from ()
 
     def advice(self, guard: str, suspect: Any) -> Iterator[str]:
-        """What to try after a ``guard`` stopped a run, the most promising first; ``suspect`` is the particle
-        at fault (psph.runs.worst_particle)."""
+        """What to try after a ``guard`` stopped a run by a ``suspect`` particle, the most promising first."""
         yield from ()
 
     def cure(self, limit: str) -> str:

@@ -248,7 +248,19 @@ def test_what_is_allowed_passes(module, source):
 
 WORDS = {
     *("soil", "soils", "solid", "solids", "updated", "elastic", "referred", "immersed", "immersion"),
-    *("body", "bodies", "floats", "anvil", "anvils", "clamp", "clamps", "region", "regions", "dust"),
+    *(
+        "body",
+        "bodies",
+        "floats",
+        "anvil",
+        "anvils",
+        "clamp",
+        "clamps",
+        "region",
+        "regions",
+        "dust",
+        "gases",
+    ),
 }
 """Of kinds of matter, in identifiers, strings that are no prose, and imports."""
 
@@ -277,6 +289,7 @@ ROOMS = (
             "ends",
             "fluids",
             "hooke",
+            "ideal_gases",
             "joints",
             "lines",
             "regions",
@@ -291,7 +304,10 @@ ROOMS = (
         for room in ("fluid/", "bod", "joints", "lines", "regions", "soils", "solid", "stressed", "volumes")
     ),
     *(f"scene/{room}" for room in ("answering", "calming", "end")),
-    *(f"scene/parts/{room}" for room in ("end", "fluid", "hookean", "order", "rigid", "soil", "solid")),
+    *(
+        f"scene/parts/{room}"
+        for room in ("end", "fluid", "gas", "hookean", "order", "rigid", "soil", "solid")
+    ),
     *(
         "physics/rigid/bod",
         "physics/rigid/chains",
@@ -300,12 +316,12 @@ ROOMS = (
         "physics/rigid/lines",
         "physics/rigid/pushes",
     ),
-    *("physics/solid/", "physics/stress/", "physics/region"),
+    *("physics/gas/", "physics/solid/", "physics/stress/", "physics/region"),
     *(
         f"simulation/{room}"
         for room in ("solid", "immersion", "pressed", "floating", "touching", "meetings", "riders")
     ),
-    *(f"simulation/{room}" for room in ("clamps", "end", "obstacles", "paddles", "wet_contact")),
+    *(f"simulation/{room}" for room in ("clamps", "end", "gas", "obstacles", "paddles", "wet_contact")),
     *("particles/others", "particles/partners", "parallel/reference", "parallel/partner"),
     *(f"output/gauges/{room}" for room in ("joint", "motion", "reaction", "stress")),
     *("lab/battery/solid", "lab/bench/lammps_solid", "lab/bench/block"),

@@ -98,7 +98,7 @@ class Basics(Table):
     )
     scheme: Literal[tuple(SCHEMES)] = key(
         "stable: the default; sph: plain SPH; ssph: the paper's; solid: for updated Lagrangian solids; "
-        "for keys that the case does not give",
+        "gas: for ideal gases; for keys that the case does not give",
         STABLE,
     )
     profile: Literal[tuple(PROFILES)] | None = key(

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple
 
-from psph.acts import BONDED, FLOWING
+from psph.acts import BONDED, FLOWING, SIZED
 from psph.case.findings import Finding, Location
 from psph.case.keys import Place, Table, Vector, key
 from psph.physics.catalogue import Catalogue
@@ -63,7 +63,7 @@ class Placed(Answering):
     @property
     def moves_freely(self) -> bool:
         """Whether forces move its particles one by one."""
-        return self.flows or self.word in BONDED
+        return self.flows or self.word in (*BONDED, *SIZED)
 
     def pushed(self, case) -> bool:
         """Whether what flows pushes it, so that a force on it is known."""

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-STABLE, PLAIN, SOLID = "stable", "sph", "solid"
+STABLE, PLAIN, SOLID, GAS = "stable", "sph", "solid", "gas"
 
 SCHEMES: dict[str, dict[str, Any]] = {
     STABLE: {
@@ -41,12 +41,21 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.artificial_viscosity": {"alpha": 1.0, "beta": 2.0},
         "physics.artificial_stress": 0.3,
     },
+    GAS: {
+        "space.kernel": "wendland-c2",
+        "space.smoothing": 1.4,
+        "time.cfl": 0.2,
+        "physics.pressure_gradient": "symmetric",
+        "physics.shock_viscosity": {"alpha": 1.0, "beta": 2.0},
+        "physics.heat_conduction": 1.0,
+    },
 }
 """The default scheme, and the two of Acta Phys. Sin. 61, 224701 (2012): plain SPH, eqs. (5) to (7)
-with (9), and SSPH, (13) and (15): docs/stability.md has the results of each.  The last is that of solids that
-are updated Lagrangian, with the friction and the artificial stress of Gray, Monaghan & Swift (2001)."""
+with (9), and SSPH, (13) and (15): docs/stability.md has the results of each.  Then that of solids that are
+updated Lagrangian, with the friction and the artificial stress of Gray, Monaghan & Swift (2001), and that of
+ideal gases, with the viscosity and the conduction of Price (2012)."""
 
-OF_FLUIDS = tuple(name for name in SCHEMES if name != SOLID)
+OF_FLUIDS = tuple(name for name in SCHEMES if name not in (SOLID, GAS))
 """Those for fluids."""
 
 SURFACE = "physics.free_surface"

@@ -4,6 +4,7 @@ from psph.case.basics import Basics
 from psph.case.bodies import Body
 from psph.case.ends import OpenEnd
 from psph.case.fluids import Fluid
+from psph.case.ideal_gases import IdealGas
 from psph.case.joints import JointTable
 from psph.case.keys import Name, key
 from psph.case.placed import Answering
@@ -26,6 +27,11 @@ class WithMatter(Basics):
     )
     soils: dict[Name, Soil] = key("the soils by name: alone, or beside fluids", {}, max_length=MANY)
     solids: dict[Name, Solid] = key("the elastic solids by name: alone, or in fluids", {}, max_length=MANY)
+    ideal_gases: dict[Name, IdealGas] = key(
+        "the ideal gases by name, in a scene by themselves: compressible, with heat and shocks",
+        {},
+        max_length=MANY,
+    )
     anvils: dict[Name, Anvil] = key("rigid planes that solids may hit, by name", {}, max_length=MANY)
     walls: dict[Name, Wall] = key(
         "the walls by name: particles that the fluid runs into", {}, max_length=MANY

@@ -126,6 +126,9 @@ class _Number:
     def __neg__(self):
         return self.trace.note(operator.neg, self)
 
+    def __abs__(self):
+        return self.trace.note(operator.abs, self)
+
     def sqrt(self):
         """What ``np.sqrt`` asks of an object."""
         return self.trace.note(lambda x: x**0.5, self, name="sqrt")
@@ -143,7 +146,7 @@ class _Number:
     __radd__, __rmul__ = __add__, __mul__
 
 
-FREE = {operator.neg}
+FREE = {operator.neg, operator.abs}
 """Operations that a compiler folds into others."""
 
 

@@ -12,9 +12,11 @@ from psph.engine.settled import settled
 from psph.fields import CROSSED
 from psph.parallel.halo import Halo
 from psph.parallel.migration import migrate
+from psph.parallel.reductions import largest
 from psph.parallel.slabs import Prices, rebalanced
 from psph.particles import neighbours
 from psph.particles.cells import Grid, make_grid, number_cells, planes_of, sort_by_cell
+from psph.particles.sizes import Sizes, narrow
 from psph.particles.store import Store
 
 GROWTH = 3.0
@@ -41,18 +43,21 @@ class Travels(NamedTuple):
     """Names of the fields that ghosts need once at a rebuild, and of those that they need in each step.
 
     ``sought``, one of the first, is above 0 in particles that every other looks for: whoever has none in the
-    cells around has no neighbours listed.  None: everyone lists everyone.
+    cells around has no neighbours listed.  None: everyone lists everyone.  ``sizes`` is there where particles
+    differ in size.
     """
 
     at_rebuild: tuple[str, ...]
     refreshed: tuple[str, ...]
     sought: str | None = None
+    sizes: Sizes | None = None
 
 
 class Domain:
     """The slab of one rank, its ghosts and its neighbour lists.
 
-    ``cutoff`` is the kernel's support and the skin together, m; ``travels`` says what ghosts need;
+    ``cutoff`` is the kernel's support and the skin together, m, and follows the largest particle where sizes
+    differ; ``travels`` says what ghosts need;
     ``lanes`` is how many entries of a list the pair loop takes at once, None where there is no such loop
     and nothing to list.
     """
@@ -70,7 +75,7 @@ class Domain:
         self.axis, self.periods = extent.axis, tuple(extent.periods)
         self.lower, self.upper = tuple(extent.lower), tuple(extent.upper)
         self._home = (self.lower, self.upper)
-        self.ghost_fields, self.refreshed, self.sought = travels
+        self.ghost_fields, self.refreshed, self.sought, self.sizes = travels
         self.lanes = lanes
         self.bounds: np.ndarray | None = None
         self.prices = Prices(comm.size)
@@ -101,6 +106,9 @@ class Domain:
         its planes, so that slow ranks get fewer.
         """
         self._wrap()
+        if self.sizes is not None:
+            self.store[self.sizes.listed][self.store.inner] = self.store[self.sizes.length][self.store.inner]
+            self._reach_farthest(self.sizes)
         self.grid = self._fit_grid()
         self._arrange(spent)
         self.rebuilds += 1
@@ -111,8 +119,15 @@ class Domain:
         ``lower`` and ``upper`` are the corners that the domain had then; collective.
         """
         self.lower, self.upper = tuple(lower), tuple(upper)
+        if self.sizes is not None:
+            self._reach_farthest(self.sizes)
         self.grid = make_grid(self.axis, self.cutoff, self.lower, self.upper, self.periods)
         self._arrange(0.0)
+
+    def _reach_farthest(self, sizes: Sizes) -> None:
+        """Cells as wide as the particle reaches that was listed as the largest of all."""
+        length = self.store[sizes.listed][self.store.inner].max(initial=0.0)
+        self.cutoff = sizes.cutoff(float(largest(self.comm, [length])[0]), self.periods)
 
     def _arrange(self, spent: float) -> None:
         # In this order: who owns which plane is known once cells are counted on the new grid, and only in
@@ -127,7 +142,8 @@ class Domain:
     def _list(self, lanes: int) -> None:
         """Ghosts, and the neighbours of every owned particle."""
         # Ids and groups of ghosts do not travel: a loop may ask a ghost for fields alone.
-        self.halo.refresh(self.ghost_fields + self.refreshed)
+        told = () if self.sizes is None else (self.sizes.listed,)
+        self.halo.refresh(self.ghost_fields + self.refreshed + told)
         self.lists = neighbours.build(
             self._used_lists(),
             self.store,
@@ -140,6 +156,8 @@ class Domain:
             None if self.sought is None else self.store[self.sought],
             self._fill,
         )
+        if self.sizes is not None:
+            narrow(self.lists, self.store, self.sizes, self.periods)
 
     def interior(self) -> tuple[int, int]:
         """Columns of the owned particles that have no ghost among their neighbours."""

@@ -81,10 +81,14 @@ class Skin:
         self._nearer = (
             2.0 * len({plane.axis for plane in planes}) ** 0.5
         )  # an image, over how far one is beyond
-        lengths = [p for p in domain.periods if p is not None]
-        self.farthest = min(PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf))
+        self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
         self._before = [0.0, 0.0]
         self.renew()
+
+    @property
+    def farthest(self) -> float:
+        """Bound on how far a particle is from where it was listed, m."""
+        return min(PART_OF_CUTOFF * self.domain.cutoff, PART_OF_PERIOD * self._shortest)
 
     def renew(self) -> None:
         """The lists are new."""

@@ -32,6 +32,9 @@ from psph.physics.fluid.viscosity import (
     LaplacianFriction,
     PairDamping,
 )
+from psph.physics.gas.heat import GasHeat
+from psph.physics.gas.pressure import GasPressure
+from psph.physics.gas.shocks import FastestSignal, HeatConduction, ShockViscosity
 from psph.physics.order.potential import LocalPotential
 from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
@@ -155,6 +158,11 @@ CATALOGUE = (
     Entry("physics.damping_zone", DampingZone),
     Entry("physics.other_damping_zone", OtherDampingZone),
     Entry("frame.motion", MovingFrame),
+    Entry("ideal_gases.*", GasPressure),
+    Entry("physics.shock_viscosity", ShockViscosity),
+    Entry("physics.heat_conduction", HeatConduction),
+    Entry("ideal_gases.*", GasHeat),
+    Entry("ideal_gases.*", FastestSignal),
     Entry("anvils.*", Anvils),
     Entry("physics.contact", SolidContact),
     Entry("physics.free_surface", FreeSurface),

@@ -154,9 +154,12 @@ def _whole(path: Path, comm, case: str) -> Saved | None:
 def listed_particles(scene, plan: Plan, saved: Saved) -> Store:
     """A share of the particles of a checkpoint, standing where the lists were made."""
     store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.materials.kinds)
-    ids, groups, listed = saved.share("id", "group", "listed_position")
+    sizes = plan.sizes.listed if plan.sizes else None
+    ids, groups, listed, *lengths = saved.share("id", "group", "listed_position", *filter(None, [sizes]))
     block = np.zeros((len(store.data), len(ids)))
     block[list(store.rows["position"])] = listed.T
+    for length in lengths:
+        block[list(store.rows[sizes])] = length
     for name in (field.name for field in OF_MATERIAL if field.name in store.rows):
         block[store.rows[name].start] = plan.materials.values(name)[groups]  # lists ask who is a fluid
     store.append(ids, groups, block)

@@ -273,7 +273,8 @@ class Engine:
             records.make_room()
         if self.records:
             longest = self.neighbourhood.longest
-            self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
+            length = self.domain.cutoff if self.plan.sizes else self.plan.smoothing_length
+            self.softening = softening(self.plan.space, length, longest)
 
     def each(self, loop, *args) -> list:
         """A loop over the columns of the owned particles."""

@@ -35,7 +35,7 @@ class Neighbourhood:
             store,
             Extent(layout.axis, layout.lower, layout.upper, layout.periods),
             layout.reach.cutoff,
-            Travels(plan.ghost_fields, plan.refreshed, _sought(scene, plan)),
+            Travels(plan.ghost_fields, plan.refreshed, _sought(scene, plan), plan.sizes),
             plan.space.lanes if plan.passes else None,
         )
         self.skin = Skin(self.domain, layout.reach.skin, plan.planes) if plan.passes else Unlisted()

@@ -25,6 +25,7 @@ from psph.fields import (
 )
 from psph.kinds import Kind, kinds_in
 from psph.particles.planes import Plane
+from psph.particles.sizes import Sizes
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK
 from psph.scene.gauging import followed_fields
@@ -125,6 +126,11 @@ class Plan:
     def of(self, name: str) -> Any:
         """The kind of matter of that name, or None."""
         return next((kind for kind in self.matter if kind.name == name), None)
+
+    @property
+    def sizes(self) -> Sizes | None:
+        """How far particles reach by lengths of their own, of the kind of matter that has them; else None."""
+        return next(filter(None, (kind.sizes for kind in self.matter)), None)
 
     @property
     def rate_passes(self) -> int:
@@ -329,7 +335,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         if case.precision == "mixed"
         else Metres(tuple(scene.layout.periods)),
         smoothing_length=scene.smoothing_length,
-        constants=shared | {"smoothing_length": scene.smoothing_length},
+        constants=shared | {n: getattr(scene, n) for n in ("smoothing_length",) if n not in stored},
         fields=fields,
         pulls=pulls,
         seen=seen,

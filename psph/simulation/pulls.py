@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.acts import BONDED, FLOWING, WHOLE
+from psph.acts import BONDED, FLOWING, SIZED, WHOLE
 from psph.composition import terms
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
@@ -43,8 +43,8 @@ class Pulls(NamedTuple):
 
 def shares_loop(called: Iterable[Called], flows: bool) -> tuple[Called, ...]:
     """The effects that act in the passes over neighbours: on what flows, or where nothing does on what is
-    bonded."""
-    matter = FLOWING if flows else BONDED
+    bonded or has particles of many sizes."""
+    matter = FLOWING if flows else (*BONDED, *SIZED)
     return tuple(call for call in called if not set(matter).isdisjoint(call.acts))
 
 

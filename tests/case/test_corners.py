@@ -18,6 +18,7 @@ from psph.acts import (
     DIMENSIONS,
     FLUIDS,
     FRAME,
+    IDEAL_GASES,
     MATTER,
     MIXED,
     SEAM,
@@ -45,7 +46,7 @@ from psph.physics.catalogue import BUILT_IN, Catalogue, Entry
 from psph.physics.fluid.gravity import Gravity
 from psph.physics.walls.conditions import CONDITIONS, CORNERS
 
-NAMES = dict(zip(MATTER, ("water", "sand", "block", "plate", "brick")))
+NAMES = dict(zip(MATTER, ("water", "sand", "block", "plate", "air", "brick")))
 """What is made of each kind of matter in the scenes below."""
 
 HOOKE = "density = 1500.0, young = 1e6, poisson = 0.3"
@@ -57,6 +58,8 @@ MADE_OF = {
     UPDATED: f"solids.block = {{ shape.box = {{ lower = LOW, upper = HIGH }}, {HOOKE}, "
     'description = "updated", MOVES }',
     SOLIDS: f"solids.plate = {{ shape.box = {{ lower = LOW, upper = HIGH }}, {HOOKE}, MOVES }}",
+    IDEAL_GASES: "ideal_gases.air = { shape.box = { lower = LOW, upper = HIGH }, density = 1.0, "
+    "pressure = 1e3, MOVES }",
     BODIES: "bodies.brick = { shape.box = { lower = LOW, upper = HIGH }, density = 800.0 }",
 }
 
@@ -81,7 +84,8 @@ def scene(*corners: str, more: str = "", moves: str = MOVES) -> str:
     space += ['periodic = ["x"]'] * (SEAM in corners) + ['symmetry = ["x.lower"]'] * (SYMMETRY in corners)
     lines.append(f"space = {{ {', '.join(space)} }}")
     if "scheme" not in more:
-        lines.append('scheme = "solid"' if matter == [UPDATED] else 'scheme = "sph"')
+        own = {UPDATED: "solid", IDEAL_GASES: "gas"}
+        lines.append(f'scheme = "{own.get(matter[0], "sph") if len(matter) == 1 else "sph"}"')
     lines += ['precision = "mixed"'] * (MIXED in corners)
     lines += [f"frame.motion.translation = {[0.5] * dimensions}"] * (FRAME in corners)
     for number, one in enumerate(matter):

@@ -78,7 +78,17 @@ def test_the_schema_allows_the_bare_value():
 def test_every_key_of_the_catalogue_has_a_place():
     for key in (key for entry in CATALOGUE for key in entry.key.split("|")):
         first, _, rest = key.partition(".")
-        assert first in ("", "physics", "fluids", "soils", "walls", "frame", "anvils", "solids")
+        assert first in (
+            "",
+            "physics",
+            "fluids",
+            "soils",
+            "walls",
+            "frame",
+            "anvils",
+            "solids",
+            "ideal_gases",
+        )
         if first in ("fluids", "walls"):
             table = {"fluids": Fluid, "walls": Wall}[first]
             assert rest.removeprefix("*.").partition("=")[0] in table.model_fields

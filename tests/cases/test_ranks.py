@@ -118,6 +118,8 @@ END = {
     "tension/liquid_bridge": 0.05,
     "tension/sliding_drop": 0.1,
     "tension/jet": 0.05,
+    "gas/sod": 0.05,
+    "gas/sedov": 0.01,
     "machines/rheometer": 5e-3,
     "machines/rheometer_paste": 3e-4,
     "machines/stirred_vessel": 3e-3,
@@ -181,7 +183,7 @@ OF_EACH_KIND = (
     *("floating_box", "cylinder_on_spring", "hull", "paddle_wheel", "absorbing_paddle", "solitary_wave"),
     *("mud/bingham_channel", "mud/grains_on_slope", "soils/blade", "soils/submerged_slide"),
     *("solids/gate", "solids/taylor_bar", "solids/rings", "solids/ball_through_plate", "solids/pulled_strip"),
-    *("hard/patch_3d", "hard/twins"),
+    *("hard/patch_3d", "hard/twins", "gas/sod"),
 )
 """Cases that have between them all that others have."""
 

@@ -40,11 +40,14 @@ from psph.physics.fluid.viscosity import (
     PairDamping,
 )
 from psph.physics.fluid.weight import Steady
+from psph.physics.gas.pressure import GasPressure
+from psph.physics.gas.shocks import KernelViscosity
 from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
 from psph.physics.surface.contact import AtAngle, ContactAngle, ContactLine, HeldByWalls
 from psph.physics.surface.tension import Blunt, SurfaceTension, TensionAmong, TensionOfOne, Tensions
+from psph.smoothing import kernel
 
 MOMENTUM, ANGULAR = "momentum", "angular momentum"
 LAWS = (
@@ -96,6 +99,8 @@ def in_a_scene(effect, dim):
         "TensionAmong": lambda: AMONG,
         "ContactLine": lambda: HeldByWalls(0.1, BLUNT, 1.0),
         "ContactAngle": lambda: AtAngle(0.1, 0.3, BLUNT, 1.0, 1e9),
+        "GasPressure": lambda: GasPressure(kernel("wendland-c2", 1.0, dim)),
+        "ShockViscosity": lambda: KernelViscosity(1.0, 2.0, kernel("wendland-c2", 1.0, dim)),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()

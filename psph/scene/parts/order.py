@@ -11,11 +11,13 @@ from psph.case.motion import motion_of
 from psph.case.tensions import tensions_in
 from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
+from psph.physics.gas.state import Gaseous
 from psph.physics.motion import Buffered, Fixed, Free
 from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp, Riding
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.parts.end import Behind, EndPart, behind
 from psph.scene.parts.fluid import FluidPart
+from psph.scene.parts.gas import GasPart
 from psph.scene.parts.part import Part
 from psph.scene.parts.rigid import BodyPart, WallPart
 from psph.scene.parts.soil import SoilPart
@@ -105,6 +107,9 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         add(SoilPart, name, f"soils.{name}", soil, Free(), solid=0)
     for name, solid in updated_in(case).items():
         add(UpdatedPart, name, f"solids.{name}", solid, Free(), solid=0)
+    for name, gas in case.ideal_gases.items():
+        finer = gas.finer(case.space.spacing)
+        add(GasPart, name, f"ideal_gases.{name}", gas.settled(), Gaseous(), solid=0, finer=finer)
     for number, ((name, solid), made) in enumerate(zip(referred_in(case).items(), solids_in(case))):
         more: dict[str, Any] = {"source": continued(solid)} if flowing else {}
         more |= {"solid": FIRST_BODY + number, "bonded": number, "made": made, "loaded": bool(flowing)}

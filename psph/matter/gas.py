@@ -1,0 +1,133 @@
+"""Ideal gases: what they add to a scene (psph.kinds)."""
+
+import math
+from collections.abc import Container, Iterator, Mapping
+
+import numpy as np
+
+from psph.fields import Field
+from psph.kinds import Kind, Rank, Stage, Work
+from psph.particles.sizes import GROWTH, Sizes
+from psph.physics.gas.pressure import unit_kernel
+from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, OF_GASES, SOUND, UNEQUAL
+from psph.scene.parts.gas import GasPart
+from psph.scene.sites import sites_within
+from psph.simulation.gas import Gases, Pace, begin_sizes, find_sizes
+from psph.smoothing import weight
+
+FORCE_LIMIT = 0.25
+"""Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
+
+FLOPS = 60
+"""Operations of a neighbour in the iteration of smoothing lengths, of about four turns."""
+
+
+class IdealGases(Kind):
+    """Gas that shocks heat, whose particles have smoothing lengths of their own."""
+
+    name = "ideal_gases"
+    columns = ("thermal_energy",)
+    may_save = (LENGTH, HEAT, SOUND)
+    is_stiff = False
+
+    @property
+    def parts(self) -> list[GasPart]:
+        """Its parts of the scene."""
+        return [part for part in self.scene.layout.parts if isinstance(part, GasPart)]
+
+    @property
+    def fields(self) -> tuple[Field, ...]:
+        """What their work fills."""
+        return OF_GASES
+
+    @property
+    def sizes(self) -> Sizes:
+        """By the smoothing length of each particle."""
+        reach = self.scene.layout.reach
+        return Sizes(self.scene.kernel.support, reach.skin, LENGTH.name, LISTED_LENGTH.name)
+
+    def starts(
+        self, fields: Container[str], species: np.ndarray, position: np.ndarray
+    ) -> Iterator[tuple[str, np.ndarray]]:
+        """Heat by the case, and smoothing lengths by the spacing: a first guess."""
+        parts = {part.number: part for part in self.parts}
+        length, heat = np.zeros((2, len(species), 1))
+        for number, part in parts.items():
+            length[species == number] = self.scene.smoothing_length / part.finer
+            heat[species == number] = part.table.heat
+        yield LENGTH.name, length
+        yield HEAT.name, heat
+        yield f"predicted_{HEAT.name}", heat
+
+    def renews(self, passes) -> tuple[str, ...]:
+        """Lengths and what follows from them."""
+        return LENGTH.name, UNEQUAL.name, SOUND.name, "pressure", "specific_volume"
+
+    def stages(self) -> Mapping[str, Stage]:
+        """Sizes and densities are found before the sums over pairs, which read them of neighbours."""
+        return {"sum_over_pairs": Stage(find_sizes, begin_sizes)}
+
+    def planned(self, plan) -> Pace:
+        """What limits the step: at the start by sound at rest."""
+        return Pace(max(2.0 * part.wave_speed * part.finer for part in self.parts) / plan.smoothing_length)
+
+    def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
+        """That of the fastest signal across a smoothing length, and that of the largest push."""
+        pace = plan.planned[self.name]
+        yield 2.0 * plan.cfl / pace.signal, "signal speed (CFL)"
+        if pace.push > 0.0:
+            yield FORCE_LIMIT * pace.push**-0.5, "force"
+
+    def work(self, rank: Rank) -> Iterator[Work]:
+        """Sizes, pressure, and the longest step."""
+        groups = len(rank.plan.materials.species)
+        gamma, pressure = np.ones(groups), np.full(groups, np.nan)
+        for part in self.parts:
+            gamma[part.number] = part.table.gamma
+            if part.table.thermal_energy is None:
+                pressure[part.number] = part.table.pressure
+        yield Gases(rank, gamma, pressure, rank.plan.planned[self.name])
+
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
+        """What each is, how far particles reach, and what comes before the pass over pairs."""
+        scene, space = self.scene, self.scene.case.space
+        for part in self.parts:
+            one = part.table
+            yield (
+                "matter",
+                f"  ideal gas   {part.key}: γ = {one.gamma:g}, ρ = {one.density:g} kg/m³, "
+                f"p = {one.pressure:g} Pa, c = {one.sound_speed:.4g} m/s at the start",
+            )
+        yield (
+            "reach",
+            f"  kernel      {space.kernel}, h = {space.smoothing:g} n^(-1/{scene.dimensions}) of each "
+            f"particle, about {sites_within(scene, scene.support):.0f} neighbours; lists reach {GROWTH:g} "
+            "times the larger support of a pair",
+        )
+        yield "passes", "Before them smoothing lengths and densities by iteration, without a message"
+
+    def cure(self, limit: str) -> str:
+        """Coarser particles."""
+        return (
+            "space.spacing sets the step by the smallest smoothing length; give more"
+            if "signal" in limit
+            else ""
+        )
+
+    def bytes_of_particle(self, plan) -> float:
+        """Lists reach farther than those of one size."""
+        return 4.0 * sites_within(self.scene, self.scene.support) * (GROWTH**self.scene.dimensions - 1.0)
+
+    def flops(self) -> float:
+        """In the iteration."""
+        return FLOPS
+
+    def examples(self, plan) -> tuple:
+        """The kernel with h = 1 m."""
+        return (unit_kernel(self.scene.kernel, self.scene.dimensions),)
+
+    def rehearsed(self) -> tuple[int, ...]:
+        """So many in one place that each has its number of neighbours."""
+        kernel = unit_kernel(self.scene.kernel, self.scene.dimensions)
+        target = self.scene.case.space.smoothing**self.scene.dimensions
+        return (0,) * math.ceil(target / weight(kernel, 0.0))

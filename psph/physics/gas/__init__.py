@@ -1,0 +1,1 @@
+"""Ideal gases: pressure, shocks and heat, with a smoothing length for each particle (docs/gas.md)."""

@@ -1,0 +1,53 @@
+"""How the thermal energy of an ideal gas changes: by work, in shocks, and by conduction."""
+
+from typing import Any, NamedTuple
+
+from psph.acts import IDEAL_GASES
+from psph.physics.facts import Facts
+from psph.physics.gas.pressure import both_slopes, unit_kernel
+from psph.physics.gas.shocks import conduction, shock_pressure
+from psph.physics.gas.state import HEAT
+
+
+class GasHeat(NamedTuple):
+    """The heat of an ideal gas: what pressure and viscosity take from motion, and what is conducted.
+
+    u̇_i = Σ_j m_j u_ij·[p_i/ρ_i² f_ij ∇W(h_i) + ½ ν_ij ∇W̄] and conduction
+    (:class:`psph.physics.gas.shocks.HeatConduction`): Σ m (v²/2 + u) stays.  Springel & Hernquist (2002),
+    MNRAS 333, 649; Price (2012), J. Comput. Phys. 231, 759.
+    """
+
+    acts = (IDEAL_GASES,)
+
+    alpha: float = 0.0
+    beta: float = 0.0
+    strength: float = 0.0
+    kernel: Any = None
+
+    writes = HEAT
+
+    def in_scene(self, scene: Facts):
+        """With the viscosity and the conduction of the scene, and the kernel for h = 1 m."""
+        viscosity, spread = scene.physics.shock_viscosity, scene.physics.heat_conduction
+        return GasHeat(
+            viscosity.alpha if viscosity else 0.0,
+            viscosity.beta if viscosity else 0.0,
+            spread.strength if spread else 0.0,
+            unit_kernel(scene.kernel, scene.dimensions),
+        )
+
+    def start(self, i):
+        """No neighbour yet."""
+        return 0.0
+
+    def gather(self, total, i, j, pair):
+        """Add one neighbour's share of u̇_i, W/kg."""
+        own, other = both_slopes(self.kernel, i, j, pair)
+        work = i.pressure * i.specific_volume * i.specific_volume * own
+        rubbed = 0.25 * shock_pressure(self.alpha, self.beta, i, j, pair) * (own + other)
+        spread = conduction(self.strength, own, other, i, j, pair)
+        return total + (work + rubbed) * pair.u_dot_x + spread
+
+    def finish_value(self, total, i, kernel):
+        """u̇_i, W/kg."""
+        return total

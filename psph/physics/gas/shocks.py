@@ -1,0 +1,126 @@
+"""What broadens shocks and contacts of an ideal gas: viscosity, and conduction of heat."""
+
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from psph.acts import IDEAL_GASES
+from psph.formula import helper
+from psph.physics.facts import Facts
+from psph.physics.gas.pressure import both_slopes, unit_kernel
+from psph.physics.gas.state import SIGNAL
+from psph.vectors import scale
+
+
+@helper
+def approach(pair):
+    """μ = min(0, u_ij·r̂), m/s."""
+    return min(pair.u_dot_x * pair.inverse_r, 0.0)
+
+
+@helper
+def mean_volume(i, j):
+    """1/ρ̄, ρ̄ the mean of both densities, m^d/kg."""
+    return 2.0 * i.specific_volume * j.specific_volume / (i.specific_volume + j.specific_volume)
+
+
+@helper
+def shock_pressure(alpha, beta, i, j, pair):
+    """ν = (−α c̄ μ + β μ²)/ρ̄, m^(d + 2)/(kg s²): 0 where a pair parts."""
+    mu = approach(pair)
+    return (beta * mu - 0.5 * alpha * (i.sound + j.sound)) * mu * mean_volume(i, j)
+
+
+@helper
+def mean_slope(kernel, i, j, pair):
+    """m_j W̄′/r, the mean of both slopes of a pair with their f, kg/m^(d + 2)."""
+    own, other = both_slopes(kernel, i, j, pair)
+    return 0.5 * (own + other)
+
+
+class ShockViscosity(NamedTuple):
+    """Friction of gas that runs together: it makes shocks a few smoothing lengths wide.
+
+    a_i = −Σ_j m_j ν_ij ∇W̄, ν = (−α c̄ μ + β μ²)/ρ̄, μ = min(0, u_ij·r̂); ∇W̄ the mean of f_ij ∇W(h_i) and
+    f_ji ∇W(h_j).  The heat that it makes is in :class:`psph.physics.gas.heat.GasHeat`.  Monaghan (1997), J.
+    Comput. Phys. 136, 298; Price (2012), J. Comput. Phys. 231, 759.
+    """
+
+    acts = (IDEAL_GASES,)
+    conserves = ("momentum", "angular momentum")
+
+    alpha: Annotated[
+        float, Field(ge=0, description="coefficient α of c", json_schema_extra={"unit": "1"})
+    ] = 1.0
+    beta: Annotated[
+        float, Field(ge=0, description="coefficient β of the approach", json_schema_extra={"unit": "1"})
+    ] = 2.0
+
+    def in_scene(self, scene: Facts):
+        """With the kernel for h = 1 m."""
+        return KernelViscosity(self.alpha, self.beta, unit_kernel(scene.kernel, scene.dimensions))
+
+
+class KernelViscosity(NamedTuple):
+    """Friction of gas that runs together, as ShockViscosity says, with its kernel for h = 1 m."""
+
+    conserves = ShockViscosity.conserves
+
+    alpha: float
+    beta: float
+    kernel: Any
+
+    def push(self, i, j, pair):
+        """Acceleration, m/s²."""
+        nu = shock_pressure(self.alpha, self.beta, i, j, pair)
+        return scale(pair.x_ij, -nu * mean_slope(self.kernel, i, j, pair))
+
+
+class HeatConduction(NamedTuple):
+    """Heat spreads across contacts, where the pressure would have a blip.
+
+    u̇_i = ½ α_u Σ_j m_j v (u_i − u_j) [f_ij W′(h_i)/ρ_i + f_ji W′(h_j)/ρ_j], v = √(|p_i − p_j|/ρ̄).  It keeps
+    the energy of a pair, and acts where pressure is uneven.  Price (2008), J. Comput. Phys. 227, 10040.
+    """
+
+    acts = (IDEAL_GASES,)
+
+    strength: Annotated[
+        float, Field(ge=0, description="coefficient α_u", json_schema_extra={"unit": "1"})
+    ] = 1.0
+
+
+@helper
+def conduction(strength, own, other, i, j, pair):
+    """One neighbour's share of u̇_i by conduction, W/kg; ``own`` and ``other`` are both slopes."""
+    v = np.sqrt(abs(i.pressure - j.pressure) * mean_volume(i, j))
+    both = own * i.specific_volume + other * j.specific_volume
+    return 0.5 * strength * v * (i.thermal_energy - j.thermal_energy) * both * pair.r
+
+
+class FastestSignal(NamedTuple):
+    """The fastest signal between a particle and its neighbours, which sets the time step.
+
+    v = max_j (c_i + c_j − 3μ).  Springel (2005), MNRAS 364, 1105.
+    """
+
+    acts = (IDEAL_GASES,)
+
+    writes = SIGNAL
+
+    def start(self, i):
+        """No neighbour yet: 2c_i, m/s."""
+        return 2.0 * i.sound
+
+    def gather(self, total, i, j, pair):
+        """The faster of what is known and a neighbour's, m/s."""
+        return max(total, i.sound + j.sound - 3.0 * approach(pair))
+
+    def join(self, a, b):
+        """The faster of two, m/s."""
+        return max(a, b)
+
+    def finish_value(self, total, i, kernel):
+        """v, m/s."""
+        return total

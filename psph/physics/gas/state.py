@@ -1,0 +1,59 @@
+"""What particles of an ideal gas carry, how they move, and their law."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.fields import GAS, OF_SCENE, Field, Same
+
+LENGTH = OF_SCENE[0]
+"""h, which is η n^(−1/d) of each particle."""
+
+LISTED_LENGTH = Field("listed_length", "m", "smoothing length when the neighbour list was built")
+
+UNEQUAL = Field(
+    "unequal",
+    "kg",
+    "q, by which neighbours count as other masses where the smoothing length varies",
+    image=Same,
+)
+"""q_i = h_i/(d n_i Ω_i) ∂ρ_i/∂h_i: m_j f_ij = m_j − q_i (Hopkins 2013)."""
+
+SOUND = Field("sound", "m/s", "speed of sound of a gas, √(γp/ρ), as the forces read it", image=Same)
+
+HEAT = Field("thermal_energy", "J/kg", "thermal energy by mass", saved=True, evolves=True, image=Same)
+
+SIGNAL = Field("signal_speed", "m/s", "fastest signal between a particle of a gas and its neighbours")
+
+OF_GASES = (LENGTH, LISTED_LENGTH, UNEQUAL, SOUND)
+"""What their work fills."""
+
+
+class Gaseous(NamedTuple):
+    """Particles move as forces have them, and have sizes."""
+
+    kind = GAS
+    goes_free = True
+    is_free = True
+
+
+class OfHeat(NamedTuple):
+    """The law of an ideal gas, p = (γ − 1) ρ u: density and pressure alone do not tell each other.
+
+    In kick and drift it stands for that gas at the speed of sound of its start; the pressure that forces read
+    is found with the density from u (psph.simulation.gas).
+    """
+
+    gamma: float
+
+    def pressure(self, density, rest_density, sound_speed):
+        """p = c²ρ/γ, Pa."""
+        return sound_speed * sound_speed * density / self.gamma
+
+    def density(self, pressure, rest_density, sound_speed):
+        """That of the start, kg/m³, whatever the pressure."""
+        return rest_density + 0.0 * pressure
+
+    def energy(self, density, rest_density, sound_speed):
+        """None by density, J/kg: heat is booked by itself."""
+        return np.zeros_like(density)

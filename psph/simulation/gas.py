@@ -1,0 +1,174 @@
+"""Ideal gases on a rank: smoothing lengths, density and pressure before the sums over pairs, the longest step
+and the books after them."""
+
+import numpy as np
+
+from psph.engine.threads import in_threads
+from psph.errors import Failed
+from psph.kinds import Rank, Work
+from psph.parallel.reductions import exact_sums, largest
+from psph.particles.sizes import GROWTH
+from psph.physics.gas.pressure import unit_kernel
+from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
+from psph.simulation.lengths import NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state
+
+MOST_LISTS = 60
+"""Times that lists are made anew for one step: particles that find no neighbours by then have none."""
+
+PREDICTED = f"predicted_{HEAT.name}"
+
+
+class Unsized(Failed):
+    """A particle of a gas without a smoothing length, or without heat; raised on all ranks."""
+
+
+class Pace:
+    """What limits the time step of gases: the largest ``signal``/h, 1/s, and ``push``, |a|/h, 1/s²."""
+
+    def __init__(self, signal: float):
+        self.signal, self.push = signal, 0.0
+
+
+class Gases(Work):
+    """The particles of the ideal gases of a scene on a ``rank``.
+
+    ``gamma`` and ``pressure`` hold γ and the pressure of the start, Pa, of each group; NaN where the case
+    gives its thermal energy.  ``pace`` is that of the plan, the same on every rank.
+    """
+
+    name = "ideal_gases"
+
+    def __init__(self, rank: Rank, gamma: np.ndarray, pressure: np.ndarray, pace: Pace):
+        scene, self._plan, self._store, self._domain, _ = rank
+        self._gamma, self._pressure, self._pace = gamma, pressure, pace
+        kernel = unit_kernel(scene.kernel, scene.dimensions)
+        target = scene.case.space.smoothing**scene.dimensions
+        self._asked = Numbers(target, kernel, GROWTH, tuple(scene.layout.periods))
+
+    def fit(self) -> bool:
+        """Find smoothing lengths and densities; whether lists reach far enough for that.  Collective.
+
+        Raises Unsized where there is no solution.
+        """
+        store = self._store
+        came = np.zeros(store.total, np.uint8)
+        mass = store.value("mass")
+        mass = mass if isinstance(mass, np.ndarray) else np.full(store.total, mass)
+        found = Lengths(
+            store[LENGTH.name], store["density"], store["specific_volume"], store[UNEQUAL.name], came
+        )
+        self._each(
+            find_lengths,
+            store.low,
+            self._asked,
+            self._domain.lists,
+            store["position"],
+            mass,
+            store[LISTED_LENGTH.name],
+            found,
+        )
+        own = came[store.inner]
+        lost = self._worst(own == NONE)
+        outgrown, lost = largest(self._domain.comm, [float((own == OUTGROWN).any()), lost])
+        if lost:
+            raise Unsized(
+                f"particle {int(lost) - 1}: no smoothing length gives it the neighbours that space.smoothing "
+                "asks for; particles may stand in one place: give a smaller time.cfl"
+            )
+        return not outgrown
+
+    def heat(self) -> None:
+        """At the start, the thermal energy that gives each particle the pressure of the case."""
+        store, inner = self._store, self._store.inner
+        group = store.group[inner]
+        of_pressure = self._pressure[group] / ((self._gamma[group] - 1.0) * store["density"][inner])
+        given = ~np.isnan(of_pressure)
+        for name in (HEAT.name, PREDICTED):
+            store[name][inner][given] = of_pressure[given]
+
+    def press(self) -> None:
+        """Pressure and speed of sound as the forces read them; raises Unsized where there is no heat left."""
+        store = self._store
+        heat = store[PREDICTED]
+        [cold] = largest(self._domain.comm, [self._worst(~(heat[store.inner] >= 0.0))])
+        if cold:
+            raise Unsized(
+                f"particle {int(cold) - 1}: its thermal energy is below zero or no number: it expands by too "
+                "much in a step; give a smaller time.cfl"
+            )
+        arrays = store.group, self._gamma, heat, store["density"], store["pressure"], store[SOUND.name]
+        self._each(find_state, *arrays)
+
+    def after_sums(self, time: float, dt: float) -> None:
+        """The largest signal and push over all ranks, by which the next step is as long as it is."""
+        store, inner = self._store, self._store.inner
+        per_length = 1.0 / store[LENGTH.name][inner]
+        push = np.sqrt(sum(a[inner] ** 2 for a in store["acceleration"])) * per_length
+        signal = store[SIGNAL.name][inner] * per_length
+        tops = [signal.max(initial=0.0), push.max(initial=0.0)]
+        self._pace.signal, self._pace.push = largest(self._domain.comm, tops).tolist()
+
+    def measure(self) -> None:
+        """The pressure at the end of the step, by the thermal energy there."""
+        store = self._store
+        arrays = store.group, self._gamma, store[HEAT.name], store["density"], store["pressure"]
+        self._each(find_state, *arrays, store[SOUND.name])
+
+    def energy(self) -> float:
+        """Σ m u, J; the same bits on any number of ranks, collective."""
+        store = self._store
+        return float(
+            exact_sums(self._domain.comm, (store.shown("mass") * store.shown(HEAT.name))[:, None])[0]
+        )
+
+    def booked(self) -> tuple[float, ...]:
+        """The same."""
+        return (self.energy(),)
+
+    def state(self) -> dict:
+        """What sets the next step."""
+        return {self.name: [self._pace.signal, self._pace.push]}
+
+    def restore(self, state: dict) -> None:
+        """Go on from there."""
+        self._pace.signal, self._pace.push = state[self.name]
+
+    def _each(self, loop, *args) -> None:
+        in_threads(loop, self._store.low, self._store.low + self._store.owned, *args)
+
+    def _worst(self, holds: np.ndarray) -> float:
+        """One more than the largest number of a particle of which something ``holds`` (owned,), or 0."""
+        return float(1 + self._store.id[self._store.inner][holds].max(initial=-1))
+
+
+def find_sizes(simulation) -> None:
+    """Smoothing lengths, densities and pressures at the new places; new lists where these reach too short."""
+    gases, domain = simulation.engine.of(Gases.name), simulation.domain
+    if simulation.listed:
+        with simulation.ledger("halo"):
+            domain.halo.refresh(("position",))
+    _fit(simulation, gases)
+    gases.press()
+
+
+def begin_sizes(simulation) -> None:
+    """The same at the start, where the pressure of the case becomes heat."""
+    gases = simulation.engine.of(Gases.name)
+    _fit(simulation, gases)
+    gases.heat()
+    gases.press()
+
+
+def _fit(simulation, gases: Gases) -> None:
+    """Smoothing lengths, and lists that reach far enough for them."""
+    for _ in range(MOST_LISTS):
+        with simulation.ledger("lengths"):
+            fits = gases.fit()
+        if fits:
+            return
+        simulation.rebuild()
+        simulation.listed = False
+    raise Unsized(
+        f"a particle finds too few neighbours after {MOST_LISTS} lists, each {GROWTH - 1:.0%} longer; put "
+        "more particles around it, or let an axis be periodic"
+    )

@@ -1,0 +1,228 @@
+"""Ideal gases: smoothing lengths, what is conserved, sound, shocks and contacts."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cases.measures import CASES
+from gauging import start
+
+from psph.case import CaseError, load
+from psph.errors import Failed
+from psph.simulation.gas import Gases, find_sizes
+from psph.smoothing import kernel
+from psph.theory.riemann import GasState, riemann
+
+CLOUD = """
+scheme = "gas"
+
+[space]
+dimensions = 2
+spacing = 0.1
+
+[time]
+end = 1.0
+
+[ideal_gases.light]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+density = 1.0
+pressure = 1.0
+velocity_gradient = [[-0.7, 0.9], [0.2, 0.4]]
+velocity_center = [0.3, 0.1]
+jitter = 0.3
+
+[ideal_gases.heavy]
+shape.box = { lower = [1.0, 0.0], upper = [1.6, 1.0] }
+density = 4.0
+pressure = 2.0
+gamma = 1.6666666666666667
+velocity = [-0.5, 0.3]
+jitter = 0.3
+"""
+"""Two gases in disorder, with particles of unlike masses, that run into each other in an open domain."""
+
+CALM = ("physics.shock_viscosity={ alpha = 0.0, beta = 0.0 }", "physics.heat_conduction=0.0")
+"""Without friction and conduction, in the same compiled loops."""
+
+
+def cloud(tmp_path, *sets):
+    path = tmp_path / "cloud.toml"
+    path.write_text(CLOUD)
+    return start(load(path, sets))
+
+
+def of(simulation, *names):
+    return [np.array(simulation.store.shown(name), copy=True) for name in names]
+
+
+def numbers_around(simulation, h):
+    """Σ W h^d of every particle, all with all."""
+    [x] = of(simulation, "position")
+    d = x.shape[1]
+    apart = np.linalg.norm(x[:, None] - x, axis=2)
+    unit = kernel("wendland-c2", 1.0, d)
+    return np.array([sum(unit.w(r / one) for r in row) for row, one in zip(apart, h)])
+
+
+def test_smoothing_lengths_follow_the_number_of_neighbours(tmp_path):
+    simulation = cloud(tmp_path)
+    [h, rho] = of(simulation, "smoothing_length", "density")
+    assert h.max() > 1.5 * h.min()
+    assert numbers_around(simulation, h) == pytest.approx(1.4**2, rel=1e-5)
+    assert rho.max() > 3.0 * rho.min()
+
+
+@pytest.mark.parametrize("wrong", [0.1, 10.0])
+def test_a_wrong_guess_leads_to_the_same_lengths(tmp_path, wrong):
+    simulation = cloud(tmp_path)
+    order = np.argsort(of(simulation, "id")[0])
+    [right] = of(simulation, "smoothing_length")
+    simulation.store["smoothing_length"][simulation.store.inner] *= wrong
+    simulation.rebuild()
+    find_sizes(simulation)
+    again = np.argsort(of(simulation, "id")[0])
+    assert of(simulation, "smoothing_length")[0][again] == pytest.approx(right[order], rel=1e-5)
+
+
+def test_forces_keep_momentum_angular_momentum_and_energy_to_rounding(tmp_path):
+    simulation = cloud(tmp_path)
+    x, v, m, a, heat = of(simulation, "position", "velocity", "mass", "acceleration", "thermal_energy_rate")
+    force = m[:, None] * a
+    scale = np.abs(force).sum()
+    assert np.abs(force.sum(axis=0)).max() < 1e-13 * scale
+    assert abs((x[:, 0] * force[:, 1] - x[:, 1] * force[:, 0]).sum()) < 1e-13 * scale
+    work, gained = (force * v).sum(axis=1), m * heat
+    assert abs((work + gained).sum()) < 1e-13 * np.abs(work).sum()
+    assert abs(gained.sum()) > 1e-3 * np.abs(work).sum()  # something is exchanged
+
+
+def compression(simulation, step):
+    """p/ρ² dρ/dt by a difference: all move with their velocities, and sizes are found anew."""
+    found = []
+    for way in (1.0, -1.0):
+        for x, v in zip(simulation.store["position"], simulation.store["velocity"]):
+            x += way * step * v
+        simulation.engine.of(Gases.name).fit()
+        found += of(simulation, "density")
+        for x, v in zip(simulation.store["position"], simulation.store["velocity"]):
+            x -= way * step * v
+    simulation.engine.of(Gases.name).fit()
+    p, rho = of(simulation, "pressure", "density")
+    return p / rho**2 * (found[0] - found[1]) / (2.0 * step)
+
+
+def test_without_friction_heat_is_the_work_of_compression(tmp_path):
+    """Of densities whose smoothing lengths follow: so entropy stays.  With f = 1 it would not."""
+    simulation = cloud(tmp_path, *CALM)
+    [rate] = of(simulation, "thermal_energy_rate")
+    expected = compression(simulation, 1e-4)
+    size = np.abs(expected).mean()
+    assert np.abs(rate - expected).mean() < 2e-4 * size
+    store = simulation.store
+    store["unequal"][:] = 0.0
+    simulation.listed = False
+    simulation.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=True)
+    [plain] = of(simulation, "thermal_energy_rate")
+    assert np.abs(plain - expected).mean() > 0.02 * size
+
+
+def sound(tmp_path, count, *sets):
+    """Part by which sound is slower than √(γp/ρ), from a standing wave a quarter of that period on."""
+    path = tmp_path / "tube.toml"
+    path.write_text(f"""
+scheme = "gas"
+[space]
+dimensions = 1
+spacing = {1.0 / count}
+periodic = ["x"]
+lower = [0.0]
+upper = [1.0]
+[time]
+end = 1.0
+cfl = 0.1
+[ideal_gases.air]
+shape.box = {{ lower = [0.0], upper = [1.0] }}
+density = 1.0
+pressure = 0.7142857142857143
+""")
+    simulation = start(load(path, (*CALM, *sets)))
+    store, k = simulation.store, 2.0 * np.pi
+    wave = 1e-5 * np.sin(k * store["position"][0])
+    for name in ("velocity", "predicted_velocity"):
+        store[name][0][:] = wave
+    end = 0.25 / of(simulation, "sound")[0].mean()
+    while simulation.time < end:
+        simulation.step(end)
+    x, v = of(simulation, "position", "velocity")
+    return 2.0 * (v[:, 0] @ np.sin(k * x[:, 0])) * 2.0 / count / 1e-5 / np.pi
+
+
+def test_sound_is_right_to_second_order(tmp_path):
+    coarse, fine = (abs(sound(tmp_path, count)) for count in (32, 64))
+    assert fine < 0.0025 and coarse / fine > 3.6
+
+
+DENSE, THIN = GasState(1.0, 1.0), GasState(0.125, 0.1)
+
+
+def tube(*sets, drift=2e-5):
+    """Of Sod's tube at its end: x/t, density, pressure and velocity right of the middle, and the exact ones."""
+    simulation = start(load(Path(CASES) / "gas/sod.toml", sets))
+    begun = simulation.engine.booked()[0]
+    while simulation.time < 0.2:
+        simulation.step(0.2)
+    simulation.settle_pressure()
+    x, v, rho, p, m = of(simulation, "position", "velocity", "density", "pressure", "mass")
+    energy = simulation.engine.booked()[0] + 0.5 * (m @ v[:, 0] ** 2)
+    assert abs(energy / begun - 1.0) < drift and abs(m @ v[:, 0]) < 1e-14
+    right = x[:, 0] > 0.0
+    xi = (x[right, 0] - 0.5) / 0.2
+    return xi, (rho[right], p[right], v[right, 0]), riemann(DENSE, THIN, 1.4)
+
+
+def means(xi, values, low, high):
+    return [value[(xi > low) & (xi < high)].mean() for value in values]
+
+
+def test_sods_tube_and_what_it_is_without_viscosity_and_without_conduction():
+    xi, found, exact = tube()
+    between = exact.pressure, exact.velocity
+    assert means(xi, found, 0.2, 0.7) == pytest.approx([exact.middle_density(DENSE), *between], rel=0.01)
+    assert means(xi, found, 1.15, 1.5) == pytest.approx([exact.middle_density(THIN), *between], rel=0.01)
+    rho, p, v = (one - other for one, other in zip(found, exact.at(xi)))
+    for error, bound in ((rho, 0.0115), (p, 0.0075), (v, 0.0136)):
+        assert np.abs(error).mean() < bound
+    near = (xi > 0.6) & (xi < 1.2)
+    assert np.abs(found[1][near] / exact.pressure - 1.0).max() < 0.05
+    assert found[2].max() < 0.95
+
+    xi, rings, _ = tube(CALM[0], drift=2e-4)
+    assert rings[2].max() > 1.2
+    xi, blip, _ = tube(CALM[1])
+    near = (xi > 0.6) & (xi < 1.2)
+    assert np.abs(blip[1][near] / exact.pressure - 1.0).max() > 0.2
+
+
+def test_what_gases_do_not_know_is_refused_in_a_line(tmp_path):
+    path = tmp_path / "cloud.toml"
+    path.write_text(CLOUD)
+    for sets, says in {
+        ("scheme=stable",): 'scheme: "stable".*give scheme = "gas"',
+        ("precision=mixed",): "precision.*double",
+        ("ideal_gases.light.pressure=-1.0",): "ideal_gases.light.pressure",
+        ("ideal_gases.light.thermal_energy=1.0",): "ideal_gases.light.pressure.*not both",
+        ("ideal_gases.light.spacing=0.07",): "ideal_gases.light.spacing.*whole part",
+        ("walls.floor.shape.box={ lower = [0.0, -0.3], upper = [1.6, 0.0] }",): "wall",
+        ("fluids.water.shape.box={ lower = [0.0, 2.0], upper = [1.6, 3.0] }",): "remove one of the two",
+        ('space.kernel="hyperbolic"',): "space.kernel",
+    }.items():
+        with pytest.raises(CaseError, match=says):
+            load(path, sets)
+
+
+def test_a_cloud_of_one_particle_is_told(tmp_path):
+    path = tmp_path / "one.toml"
+    one = CLOUD.partition("[ideal_gases.heavy]")[0].replace("[1.0, 1.0]", "[0.1, 0.1]")
+    path.write_text(one)
+    with pytest.raises(Failed, match="neighbours.*put more particles"):
+        start(load(path))
