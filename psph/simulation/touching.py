@@ -38,6 +38,8 @@ class Contacts:
         self._meetings = Meetings(scene, plan, rows, maps)
         self._size = np.array([one.reach(at[None]) for one, at in zip(self._meetings.tips, places)])
         self._touching: BodyContacts | None = None
+        self._yielding: Yielding
+        self._then: float
         self._extra: tuple[np.ndarray, np.ndarray] | None = None
 
     def meet(
@@ -54,7 +56,7 @@ class Contacts:
         if not len(touching.first):
             return
         held, gap = hold() if hold else None, np.maximum(touching.gap, 0.0)
-        self._yielding: Yielding = bodies.yielding(then)
+        self._then, self._yielding = then, bodies.yielding(then)
         speed, spin = _moving(bodies)
         closing = gap + dt * approach(touching, speed, spin) <= 0.0
         bounced = -self._restitution * approach(touching, *before)
@@ -77,6 +79,7 @@ class Contacts:
             bodies.shoved(*self._extra, sign=-1.0)
         if self._touching is not None and len(self._touching.first):
             held = hold() if hold else None
+            self._yielding = bodies.yielding(self._then)  # they have turned, and joints answer as they stand
             wanted = np.zeros(len(self._touching.first))
             self._bear(bodies, self._solved(wanted, self._friction, *_moving(bodies), held), dt, held)
 

@@ -169,3 +169,38 @@ def test_a_toggle_presses_a_block_against_a_wall(tmp_path):
 def test_a_toggle_gives_way_if_one_is_solved_after_the_other(tmp_path, one_after_the_other):
     dry, _ = toggle(tmp_path)
     assert dry.floating.contacts.deepest(dry.to(0.2)).depth > 1e-4
+
+
+GATE = """
+time.end = 1.0
+physics.gravity = [2.0, 0.0, -9.81]
+physics.sound_speed = 20.0
+space = {{ dimensions = 3, spacing = 0.1 }}
+[fluids.puddle]
+shape.box = {{ lower = [3.0, 0.0, 0.0], upper = [3.3, 0.3, 0.3] }}
+[walls.channel]
+shape.difference.from.box = {{ lower = [-1.0, -0.3, -0.3], upper = [4.0, 0.8, 1.2] }}
+shape.difference.minus = [{{ box = {{ lower = [-1.0, 0.0, 0.0], upper = [4.0, 0.5, 1.2] }} }}]
+[bodies.gate]
+shape.box = {{ lower = [1.4, {low}, 0.3], upper = [1.7, {high}, 0.9] }}
+density = 500.0
+[joints.top]
+of = ["gate"]
+hinge = {{ at = [1.5, 0.25, 0.9], axis = [0.0, 1.0, 0.0] }}
+"""
+"""A gate that hangs in a channel."""
+
+
+def test_a_gate_between_walls_that_its_hinge_keeps_it_from_swings_as_if_they_were_not_there(tmp_path):
+    """Contacts that took the gate as it stood before the step asked the hinge for 1e15 N s."""
+    spins, borne = [], []
+    for low, high in ((0.0, 0.5), (0.1, 0.4)):
+        dry = Dry(draft(tmp_path, GATE.format(low=low, high=high)), dt=2e-3)
+        most = 0.0
+        while dry.time < 0.2:
+            dry.to(dry.time + 0.02)
+            most = max(most, float(np.abs(dry.bodies.bearing).max()))
+        spins.append(dry.bodies.spin[0])
+        borne.append(most / dry.bodies.mass[0, 0])
+    assert spins[0] == pytest.approx(spins[1], abs=1e-9) and abs(spins[0][1]) > 0.1
+    assert borne[0] == pytest.approx(borne[1], rel=1e-6)
