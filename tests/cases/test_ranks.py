@@ -87,6 +87,7 @@ END = {
     "wave_flap": 0.05,
     "mast_on_pontoon": 0.05,
     "moored_pontoon": 0.05,
+    "coast/armour": 0.03,
     "coast/breakwater": 0.05,
     "coast/overtopping": 0.05,
     "coast/pontoon": 0.05,
