@@ -62,6 +62,7 @@ END = {
     "soils/vertical_cut": 0.1,
     "soils/slope": 0.1,
     "soils/blade": 0.03,
+    "soils/bucket": 0.03,
     "soils/sliding_block": 0.02,
     "soils/wheel": 0.01,
     "soils/overtopped_dam": 0.02,

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from cases.measures import by_id, finished, roughness
+from cases.measures import by_id, finished, roughness, window
 from long import LONG, tell
 from numpy.polynomial import polynomial
 
@@ -123,6 +123,15 @@ def test_a_blade_meets_the_passive_force_and_then_more(tmp_path):
     rankine = 0.5 * 1800.0 * G * 0.1**2 * (1.0 + MU) / (1.0 - MU)
     assert -push["push.force_x"][early].mean() == pytest.approx(rankine, rel=0.15)
     assert -push["push.force_x"][push["time"] > 0.9].mean() > 1.5 * rankine
+
+
+@LONG
+def test_a_bucket_bears_what_it_has_dug(tmp_path):
+    """At rest the force on it is the weight of the sand that lies in it, 136 of 1,042 grains."""
+    run = finished("soils/bucket", tmp_path, "output.frames=0.5")
+    held = (sand(run, "position")[:, 1] > 0.25).sum() * 1800.0 * 0.01**2 * G
+    down = window(run.gauges()["bucket"], "bucket.force_y", 2.3, 3.0)
+    assert held > 100.0 and -down.mean() == pytest.approx(held, rel=0.01)
 
 
 @LONG

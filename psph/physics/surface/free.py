@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.acts import FLUIDS, MADE_FOR_FLUIDS
+from psph.acts import FLUIDS, MADE_FOR_FLUIDS, SOILS
 from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.formula import where
@@ -73,7 +73,7 @@ class TensionFloor(NamedTuple):
     otherwise be held together, or pulled to a wall, by pressures that water does not bear.
     """
 
-    acts = (FLUIDS,)
+    acts = (FLUIDS, SOILS)
     refuses = MADE_FOR_FLUIDS
 
     least: Annotated[
