@@ -16,7 +16,8 @@ from psph.parallel.reductions import largest
 from psph.parallel.slabs import Prices, rebalanced
 from psph.particles import neighbours
 from psph.particles.cells import Grid, make_grid, number_cells, planes_of, sort_by_cell
-from psph.particles.sizes import Sizes, narrow
+from psph.particles.levels import Slab, list_by_levels
+from psph.particles.sizes import Sizes
 from psph.particles.store import Store
 
 GROWTH = 3.0
@@ -144,6 +145,11 @@ class Domain:
         # Ids and groups of ghosts do not travel: a loop may ask a ghost for fields alone.
         told = () if self.sizes is None else (self.sizes.listed,)
         self.halo.refresh(self.ghost_fields + self.refreshed + told)
+        if self.sizes is not None:
+            self.lists = list_by_levels(
+                self.store["position"], self.store[self.sizes.listed], self.sizes, self._slab(), lanes
+            )
+            return
         self.lists = neighbours.build(
             self._used_lists(),
             self.store,
@@ -156,8 +162,12 @@ class Domain:
             None if self.sought is None else self.store[self.sought],
             self._fill,
         )
-        if self.sizes is not None:
-            narrow(self.lists, self.store, self.sizes, self.periods)
+
+    def _slab(self) -> Slab:
+        """Where this rank's planes begin and end."""
+        store, grid = self.store, self.grid
+        begin, end = self.bounds[self.comm.rank : self.comm.rank + 2] / grid.inverse[0] + grid.lower[0]
+        return Slab(self.axis, begin, end, store.low, store.owned, store.high, self.periods)
 
     def interior(self) -> tuple[int, int]:
         """Columns of the owned particles that have no ghost among their neighbours."""

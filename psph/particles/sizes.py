@@ -2,12 +2,7 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
-from psph.engine.jit import elementwise
 from psph.errors import Failed
-from psph.particles.neighbours import Neighbours
-from psph.vectors import at, dot, nearest_image, subtract
 
 GROWTH = 1.1
 """By how much a smoothing length may grow before lists are made anew."""
@@ -45,36 +40,3 @@ class Sizes(NamedTuple):
                     "more particles"
                 )
         return found
-
-
-def narrow(lists: Neighbours, store, sizes: Sizes, periods) -> None:
-    """Take out of the ``lists`` of a store, which name all within the cutoff, those that neither of a pair
-    reaches: what stays is within the larger reach of both, and the skin."""
-    narrow_rows(
-        store.owned,
-        store.low,
-        lists,
-        store["position"],
-        store[sizes.listed],
-        GROWTH * sizes.support,
-        sizes.skin,
-        tuple(periods),
-    )
-
-
-@elementwise
-def narrow_rows(owned, low, lists, position, listed, reach, skin, periods):
-    """The same, by the ``listed`` lengths (columns,), m; rows are filled up with the particle itself."""
-    for row in range(np.uint64(owned)):
-        k, begin = row + np.uint64(low), lists.begin[row]
-        end, kept = begin + np.uint64(lists.lengths[row]), begin
-        for n in range(begin, end):
-            j = np.uint64(lists.lists[n])
-            x = nearest_image(subtract(at(position, k), at(position, j)), periods)
-            within = reach * max(listed[k], listed[j]) + skin
-            if dot(x, x) <= within * within:
-                lists.lists[kept] = j
-                kept += np.uint64(1)
-        for n in range(kept, end):
-            lists.lists[n] = k
-        lists.lengths[row] = kept - begin

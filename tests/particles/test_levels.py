@@ -1,0 +1,67 @@
+"""Neighbours among particles of many sizes, against all pairs."""
+
+import numpy as np
+import pytest
+
+from psph.particles.levels import Slab, list_by_levels
+from psph.particles.sizes import GROWTH, Sizes, TooLarge
+
+SIZES = Sizes(2.0, 0.003, "smoothing_length", "listed_length")
+
+
+def cloud(dimensions, ratio, count=400, seed=5):
+    """Places, m (dim, n), and smoothing lengths, m, of which one in ten is up to ``ratio`` times the others."""
+    rng = np.random.default_rng(seed)
+    position = rng.uniform(0.0, 1.0, (dimensions, count))
+    length = 0.12 / ratio * np.where(rng.uniform(size=count) < 0.1, rng.uniform(1.0, ratio, count), 1.0)
+    return position, length
+
+
+def all_pairs(position, length, periods):
+    """Who is within the larger reach of both and the skin, by rows."""
+    apart = position[:, :, None] - position[:, None]
+    for x, period in zip(apart, periods):
+        if period:
+            x -= period * np.rint(x / period)
+    within = np.maximum(length[:, None], length) * GROWTH * SIZES.support + SIZES.skin
+    near = (apart**2).sum(axis=0) <= within**2
+    np.fill_diagonal(near, False)
+    return [np.flatnonzero(row) for row in near]
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.0, 10.0, 100.0])
+@pytest.mark.parametrize("dimensions", [1, 2, 3])
+@pytest.mark.parametrize("periodic", [False, True])
+def test_lists_have_all_neighbours_and_no_others(dimensions, ratio, periodic):
+    """Axes across the slab repeat or not; the slab itself has no ghosts."""
+    position, length = cloud(dimensions, ratio)
+    n = position.shape[1]
+    periods = (None, *[1.0 if periodic else None] * (dimensions - 1))
+    lists = list_by_levels(tuple(position), length, SIZES, Slab(0, 0.0, 1.0, 0, n, 0, periods), 4)
+    expected = all_pairs(position, length, periods)
+    for k, row in enumerate(expected):
+        begin, many = int(lists.begin[k]), int(lists.lengths[k])
+        assert np.array_equal(lists.lists[begin : begin + many], row)
+        assert (lists.lists[begin + many : begin + -(-many // 4) * 4] == k).all()
+    assert sum(map(len, expected)) > n // 2
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 3])
+def test_ghosts_across_a_seam_are_seen_once(dimensions):
+    """One rank whose far planes are its ghosts on the other side: as with the nearest image of all."""
+    position, length = cloud(dimensions, 4.0)
+    periods = (1.0,) * dimensions
+    cutoff = SIZES.cutoff(length.max(), periods)
+    below, above = (np.flatnonzero(side) for side in (position[0] > 1.0 - cutoff, position[0] < cutoff))
+    n = position.shape[1]
+    owner = np.concatenate([below, np.arange(n), above])
+    slab = Slab(0, 0.0, 1.0, len(below), n, len(above), periods)
+    lists = list_by_levels(tuple(position[:, owner]), length[owner], SIZES, slab, 1)
+    for k, row in enumerate(all_pairs(position, length, periods)):
+        begin, many = int(lists.begin[k]), int(lists.lengths[k])
+        assert np.array_equal(np.sort(owner[lists.lists[begin : begin + many]]), row)
+
+
+def test_a_reach_beyond_a_third_of_a_period_is_told():
+    with pytest.raises(TooLarge, match="along y, 1 m; give a longer domain"):
+        SIZES.cutoff(0.2, (None, 1.0))
