@@ -48,6 +48,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.pressure_gradient": "symmetric",
         "physics.shock_viscosity": {"alpha": 1.0, "beta": 2.0},
         "physics.heat_conduction": 1.0,
+        "neighbours.skin": 0.15,
     },
 }
 """The default scheme, and the two of Acta Phys. Sin. 61, 224701 (2012): plain SPH, eqs. (5) to (7)

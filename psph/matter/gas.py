@@ -12,11 +12,14 @@ from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, OF_GASES, SOUND, UNEQUAL
 from psph.scene.parts.gas import GasPart
 from psph.scene.sites import sites_within
-from psph.simulation.gas import Gases, Pace, begin_sizes, find_sizes
+from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, find_sizes
 from psph.smoothing import weight
 
 FORCE_LIMIT = 0.25
 """Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
+
+COOLING_LIMIT = 0.3
+"""Share of its heat that a particle loses in a step at the most."""
 
 FLOPS = 60
 """Operations of a neighbour in the iteration of smoothing lengths, of about four turns."""
@@ -57,11 +60,11 @@ class IdealGases(Kind):
             heat[species == number] = part.table.heat
         yield LENGTH.name, length
         yield HEAT.name, heat
-        yield f"predicted_{HEAT.name}", heat
+        yield PREDICTED, heat
 
     def renews(self, passes) -> tuple[str, ...]:
-        """Lengths and what follows from them."""
-        return LENGTH.name, UNEQUAL.name, SOUND.name, "pressure", "specific_volume"
+        """Lengths and what follows from them, and the heat, of which too low a prediction is lifted."""
+        return LENGTH.name, UNEQUAL.name, SOUND.name, PREDICTED, "pressure", "specific_volume"
 
     def stages(self) -> Mapping[str, Stage]:
         """Sizes and densities are found before the sums over pairs, which read them of neighbours."""
@@ -72,11 +75,13 @@ class IdealGases(Kind):
         return Pace(max(2.0 * part.wave_speed * part.finer for part in self.parts) / plan.smoothing_length)
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
-        """That of the fastest signal across a smoothing length, and that of the largest push."""
+        """That of the fastest signal across a smoothing length, of the largest push, and of what cools."""
         pace = plan.planned[self.name]
         yield 2.0 * plan.cfl / pace.signal, "signal speed (CFL)"
         if pace.push > 0.0:
             yield FORCE_LIMIT * pace.push**-0.5, "force"
+        if pace.cooling > 0.0:
+            yield COOLING_LIMIT / pace.cooling, "cooling"
 
     def work(self, rank: Rank) -> Iterator[Work]:
         """Sizes, pressure, and the longest step."""

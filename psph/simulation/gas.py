@@ -12,6 +12,8 @@ from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
 from psph.simulation.lengths import NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state
 
+TINY = np.finfo(float).tiny
+
 MOST_LISTS = 60
 """Times that lists are made anew for one step: particles that find no neighbours by then have none."""
 
@@ -22,11 +24,26 @@ class Unsized(Failed):
     """A particle of a gas without a smoothing length, or without heat; raised on all ranks."""
 
 
+LEAST_PREDICTED = 0.5
+"""Share of a particle's heat, half a step kicked, below which it is not predicted: where a shock has passed
+rates fall, and what goes on from those of earlier steps would be too low."""
+
+
 class Pace:
-    """What limits the time step of gases: the largest ``signal``/h, 1/s, and ``push``, |a|/h, 1/s²."""
+    """What limits the time step of gases: the largest ``signal``/h and ``cooling``, −u̇/u, in 1/s, and
+    ``push``, |a|/h in 1/s²."""
 
     def __init__(self, signal: float):
-        self.signal, self.push = signal, 0.0
+        self.signal, self.push, self.cooling = signal, 0.0, 0.0
+
+    @property
+    def tops(self) -> list[float]:
+        """All of them."""
+        return [self.signal, self.push, self.cooling]
+
+    @tops.setter
+    def tops(self, tops: list[float]) -> None:
+        self.signal, self.push, self.cooling = tops
 
 
 class Gases(Work):
@@ -90,7 +107,9 @@ class Gases(Work):
         """Pressure and speed of sound as the forces read them; raises Unsized where there is no heat left."""
         store = self._store
         heat = store[PREDICTED]
-        [cold] = largest(self._domain.comm, [self._worst(~(heat[store.inner] >= 0.0))])
+        own, least = heat[store.inner], LEAST_PREDICTED * store[HEAT.name][store.inner]
+        np.maximum(own, least, out=own)
+        [cold] = largest(self._domain.comm, [self._worst(~(own >= 0.0))])
         if cold:
             raise Unsized(
                 f"particle {int(cold) - 1}: its thermal energy is below zero or no number: it expands by too "
@@ -100,13 +119,14 @@ class Gases(Work):
         self._each(find_state, *arrays)
 
     def after_sums(self, time: float, dt: float) -> None:
-        """The largest signal and push over all ranks, by which the next step is as long as it is."""
+        """The largest of what limits the next step, over all ranks."""
         store, inner = self._store, self._store.inner
         per_length = 1.0 / store[LENGTH.name][inner]
         push = np.sqrt(sum(a[inner] ** 2 for a in store["acceleration"])) * per_length
         signal = store[SIGNAL.name][inner] * per_length
-        tops = [signal.max(initial=0.0), push.max(initial=0.0)]
-        self._pace.signal, self._pace.push = largest(self._domain.comm, tops).tolist()
+        cooling = -store[HEAT.rate][inner] / np.maximum(store[HEAT.name][inner], TINY)
+        tops = [one.max(initial=0.0) for one in (signal, push, cooling)]
+        self._pace.tops = largest(self._domain.comm, tops).tolist()
 
     def measure(self) -> None:
         """The pressure at the end of the step, by the thermal energy there."""
@@ -127,11 +147,11 @@ class Gases(Work):
 
     def state(self) -> dict:
         """What sets the next step."""
-        return {self.name: [self._pace.signal, self._pace.push]}
+        return {self.name: self._pace.tops}
 
     def restore(self, state: dict) -> None:
         """Go on from there."""
-        self._pace.signal, self._pace.push = state[self.name]
+        self._pace.tops = state[self.name]
 
     def _each(self, loop, *args) -> None:
         in_threads(loop, self._store.low, self._store.low + self._store.owned, *args)
