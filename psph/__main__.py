@@ -312,6 +312,13 @@ def _send_to_nowhere(stream) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
+def _of_a_formula(error: BaseException) -> Refused | None:
+    """What is said of an error in a formula of a user's file."""
+    from psph.runs.uncompiled import failed  # late: numba comes with it
+
+    return failed(error) if isinstance(error, Exception) else None
+
+
 def guarded(arguments: list[str]) -> None:
     """Run the command line so that whatever ends one rank ends all of them."""
     for name in ("stdout", "stderr"):
@@ -339,6 +346,8 @@ def guarded(arguments: list[str]) -> None:
         trouble = isinstance(error, OSError) and _trouble_with_output()
         if trouble:
             _end_all(last_words, trouble, Failed.exit_code)
+        if theirs := _of_a_formula(error):
+            _end_all(last_words, str(theirs), theirs.exit_code, BEFORE_THE_START)
         _end_all(last_words, traceback.format_exc(), 1)
     sys.exit(code)
 

@@ -1,6 +1,7 @@
 """A trial call of an effect in plain Python: which fields does its formula read?"""
 
 from collections.abc import Mapping
+from numbers import Real
 from typing import NamedTuple
 
 from psph.composition.pair import PAIR_VECTORS, Pair
@@ -123,8 +124,10 @@ def _forces(effect, i, j, pair, dimensions: int) -> None:
 
 
 def _check(effect, name: str, value, width: int | None) -> None:
-    """Raise WrongShape where a formula gives a tuple for a number, or none of so many numbers."""
+    """Raise WrongShape where a formula gives no number, a tuple for one, or none of so many numbers."""
     given = len(value) if isinstance(value, tuple) else None
-    if given != width:
-        kinds = [f"a tuple of {one} numbers" if one else "a number" for one in (given, width)]
+    kinds = [f"a tuple of {one} numbers" if one else "a number" for one in (given, width)]
+    if other := [one for one in (value if given else [value]) if not isinstance(one, Real)]:
+        kinds[0] = "nothing" if other[0] is None else f"a {type(other[0]).__name__}"
+    if other or given != width:
         raise WrongShape(f"{type(effect).__name__}.{name} gives {kinds[0]}; let it give {kinds[1]}")

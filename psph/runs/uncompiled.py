@@ -1,7 +1,9 @@
-"""A formula of a user's file that the compiler refuses, in one line instead of its own hundred."""
+"""A formula of a user's file that fails or that the compiler refuses, in one line instead of a hundred."""
 
 import linecache
 import re
+import sys
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,6 +11,7 @@ from pathlib import Path
 import numba
 from numba.core.errors import NumbaError
 
+from psph.case.extensions import PREFIX
 from psph.engine.jit import PACKAGE
 from psph.errors import Refused
 
@@ -46,6 +49,17 @@ def _place(said: str) -> tuple[Path, int] | None:
         path = Path(found["at"] or found["file"]).absolute()
         if path.exists() and not any(path.is_relative_to(folder) for folder in NOT_THEIRS):
             return path, int(found["line"] or found["row"])
+    return None
+
+
+def failed(error: BaseException) -> Uncompiled | None:
+    """The line for what a formula has raised in a trial call; None where no file of a case is."""
+    used = {module.__file__ for name, module in [*sys.modules.items()] if name.startswith(PREFIX)}
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        if frame.filename in used:
+            why = _cure(frame.line or "") if isinstance(error, TypeError) else str(error)
+            name = Path(frame.filename).name
+            return Uncompiled(f"{name}: line {frame.lineno}: `{frame.line}` cannot be computed: {why}")
     return None
 
 

@@ -1,7 +1,10 @@
 """A formula of a user's file that does not compile is one line: file, line, what to write instead."""
 
+import re
+
 import pytest
 from drafts import TANK, draft
+from jobs import mpirun
 from mpi4py import MPI
 
 from psph.runs.setup import compile_ahead
@@ -55,6 +58,25 @@ def test_it_names_the_line_and_the_cure(tmp_path, formula, says):
     with pytest.raises(Uncompiled, match=says) as refused:
         compile_ahead(scene, make_plan(scene), MPI.COMM_SELF)
     assert "\n" not in str(refused.value) and refused.value.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("formula", "says"),
+    [
+        ("self.rate * np.sin(pair.r)", r"mine.py: line 17: `return .*` cannot be computed: use numbers"),
+        ("self.rate * pair.r**0.5", "mine.py: line 17: .* whole powers"),
+        ("self.rate * factor", "mine.py: line 17: .* name 'factor' is not defined"),
+        ("None", "Mine.radial gives nothing; let it give a number"),
+        ("'a'", "Mine.radial gives a str; let it give a number"),
+    ],
+)
+def test_what_fails_before_it_is_compiled_is_a_line_too(tmp_path, formula, says):
+    text = f'    def radial(self, i, j, pair):\n        """Coefficient."""\n        return {formula}\n'
+    (tmp_path / "mine.py").write_text(HEAD + text + TAIL)
+    (tmp_path / "case.toml").write_text('use = ["mine.py"]\n' + TANK + "[physics.mine]\n")
+    job = mpirun(1, ["-m", "psph", "run", tmp_path / "case.toml", "--out", tmp_path / "out"])
+    assert job.returncode == 2 and "Traceback" not in job.stderr
+    assert re.search(says, job.stderr)
 
 
 def test_faults_of_psph_itself_keep_their_traceback():

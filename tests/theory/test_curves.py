@@ -128,6 +128,20 @@ def test_height_and_period_of_a_sea_that_is_known():
         significant_height(Curve(TIME[:3], TIME[:3]))
 
 
+@pytest.mark.parametrize("waves", (3.5, 5.0, 8.0, 20.0))
+def test_a_short_record_has_the_period_of_its_waves(waves):
+    """In four parts each would be shorter than a wave, and its length would pass for the period."""
+    time = np.linspace(0.0, 1.2 * waves, round(40 * waves))
+    found = peak_period(Curve(time, np.sin(2.0 * np.pi * time / 1.2)))
+    assert found.value == pytest.approx(1.2, rel=0.05) and abs(found.value - 1.2) < found.reach
+
+
+def test_less_than_three_waves_have_no_peak_period():
+    time = np.linspace(0.0, 2.4, 80)
+    with pytest.raises(NoNumber, match="less than three of its waves"):
+        peak_period(Curve(time, np.sin(2.0 * np.pi * time / 1.2)))
+
+
 def test_what_goes_over_a_crest_wave_by_wave():
     beyond = 0.001 * np.clip(TIME - 1.0, 0.0, 0.5) + 0.004 * np.clip(TIME - 4.0, 0.0, 0.5)
     curve = Curve(TIME, 0.7 + beyond)

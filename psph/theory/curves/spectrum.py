@@ -11,6 +11,10 @@ PARTS = 4
 """Into which a record is cut for a spectrum; they overlap by a half, so that seven are averaged."""
 
 
+FEWEST = 3.0
+"""Waves in each part, or a period is not told from the length of the part."""
+
+
 def spectrum(curve: Curve, parts: int = PARTS) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies f, Hz, and the variance density S, of the unit of the curve squared by Hz.
 
@@ -41,13 +45,17 @@ def significant_height(curve: Curve) -> CurveNumber:
 def peak_period(curve: Curve) -> CurveNumber:
     """T_p = ∫S⁴ df/∫f S⁴ df, s: a mean about the peak of the spectrum, which a single frequency is not sure
     of (Young 1995, J. Waterw. Port Coast. Ocean Eng. 121, 261).  The reach is half a step of the frequencies.
+    A short record is cut into fewer parts, so that each has three waves; NoNumber where it has not.
     """
-    frequency, density = spectrum(curve)
-    if curve.is_still:
-        raise NoNumber("it does not swing")
-    weight = (density / density.max()) ** 4
-    peak = float((frequency * weight).sum() / weight.sum())
-    return CurveNumber(1.0 / peak, reach=0.5 * (frequency[1] - frequency[0]) / peak**2)
+    for parts in (PARTS, 2, 1):
+        frequency, density = spectrum(curve, parts)
+        if curve.is_still:
+            raise NoNumber("it does not swing")
+        weight = (density / density.max()) ** 4
+        peak = float((frequency * weight).sum() / weight.sum())
+        if peak >= FEWEST * frequency[0]:
+            return CurveNumber(1.0 / peak, reach=0.5 * (frequency[1] - frequency[0]) / peak**2)
+    raise NoNumber(f"it lasts {curve.lasts:g} s, less than three of its waves")
 
 
 def highest_third(curve: Curve) -> CurveNumber:
