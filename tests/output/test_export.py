@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import h5py
 import numpy as np
 import pytest
+from mpi4py import MPI
 from viewers import padded
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
@@ -22,6 +23,7 @@ from psph.output.frames import FrameFile
 from psph.output.pictures.names import remove_pictures
 from psph.output.reader import Run
 from psph.physics.fluid.apparent import STRAIN_RATE
+from psph.runs.start import run
 
 AXES = {1: "{a}", 2: "{a}, {a}", 3: "{a}, {a}, {a}"}
 CASE = """
@@ -328,3 +330,36 @@ def test_sarracen_takes_frames(folder, dimensions):
     particles = sarracen.SarracenDataFrame(columns)
     assert (particles.xcol, particles.hcol) == ("x", "h")
     assert np.array_equal(particles["P"].to_numpy(), frame["pressure"])
+
+
+GASES = """
+scheme = "gas"
+[space]
+dimensions = 2
+spacing = 0.1
+[time]
+end = 1.0
+[ideal_gases.thin]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+density = 1.0
+pressure = 1.0
+[ideal_gases.dense]
+shape.box = { lower = [1.0, 0.0], upper = [2.0, 1.0] }
+density = 4.0
+pressure = 1.0
+spacing = 0.05
+"""
+
+
+def test_a_snapshot_of_gases_has_the_sizes_and_the_heat_of_particles(tmp_path):
+    path = tmp_path / "gases.toml"
+    path.write_text(GASES)
+    run(load(path, ["time.end=1e-3", "output.frames=1e-3"]), tmp_path / "out", MPI.COMM_SELF)
+    export(tmp_path / "out", "gadget", [0.0], tmp_path / "snapshots")
+    [snapshot] = (tmp_path / "snapshots").glob("*.hdf5")
+    frame = Run(tmp_path / "out").frame(0)
+    with h5py.File(snapshot) as file:
+        part = file["PartType0"]
+        assert np.array_equal(part["InternalEnergy"], frame["thermal_energy"])
+        assert part["SmoothingLength"][:] == pytest.approx(2.0 * frame["smoothing_length"])
+        assert part["SmoothingLength"][:].max() > 1.5 * part["SmoothingLength"][:].min()

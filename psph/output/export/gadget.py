@@ -16,7 +16,15 @@ from psph.output.progress import with_progress
 TYPES = 6
 """Types of particles that a snapshot can have."""
 
-_NAMES = {"position": "Coordinates", "velocity": "Velocities", "id": "ParticleIDs"}
+SIZE = "smoothing_length"
+"""The field of frames that holds the sizes of particles, where these differ."""
+
+_NAMES = {
+    "position": "Coordinates",
+    "velocity": "Velocities",
+    "id": "ParticleIDs",
+    "thermal_energy": "InternalEnergy",
+}
 """Names that Gadget has of its own; others are made of psph's, ``strain_rate`` as ``StrainRate``."""
 
 _SI = {
@@ -32,7 +40,7 @@ def write_gadget(exported: Exported, folder: Path) -> list[Path]:
 
     ``PartType0`` are the fluids, 1 walls, 2 elastic solids, 3 rigid bodies (``PARTS``).  Numbers are those of
     the frames, to the bit, vectors with three components.  ``SmoothingLength`` is the radius of the
-    kernel's support, as in Gadget.
+    kernel's support, as in Gadget, of each particle where they differ.
     """
     paths = [folder / f"{exported.stem}_{k:05d}.hdf5" for k in exported.chosen]
     for k, path in with_progress(list(zip(exported.chosen, paths)), "writing", "snapshots"):
@@ -47,6 +55,10 @@ def _fill(file: h5py.File, exported: Exported, k: int) -> None:
     frame = exported.run.frame(k)
     dimensions = frame["position"].shape[1]
     part = exported.parts(frame["group"])
+    lengths, scene = frame.pop(SIZE, None), exported.scene
+    support = np.full(len(part), exported.support)
+    if lengths is not None:
+        support = exported.support / scene.smoothing_length * lengths
     counts = np.bincount(part, minlength=TYPES).astype(np.int32)
     file.create_group("Header").attrs.update(_header(exported, k, frame["position"], counts))
     file.create_group("Units").attrs.update(_SI)
@@ -56,7 +68,7 @@ def _fill(file: h5py.File, exported: Exported, k: int) -> None:
         for name, rows in frame.items():
             _add(group, _called(name), in_space(rows, dimensions)[of_kind], exported.units[name])
         _add(group, "Masses", exported.masses[frame["group"][of_kind]], "kg")
-        _add(group, "SmoothingLength", np.full(counts[number], exported.support), "m")
+        _add(group, "SmoothingLength", support[of_kind], "m")
 
 
 def _header(exported: Exported, k: int, position: np.ndarray, counts: np.ndarray) -> dict:
