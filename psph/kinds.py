@@ -21,6 +21,7 @@ CATALOGUE = (
     "psph.matter.wall:Walls",
     "psph.matter.region:Regions",
     "psph.matter.end:OpenEnds",
+    "psph.matter.attraction:Attraction",
 )
 """Module and class of each kind that psph has, in the order in which they are asked.  They are named here and
 imported when a scene is there, since they stand above all that asks them."""

@@ -1,0 +1,110 @@
+"""Self-gravity: all that has mass and that forces move attracts all else of that."""
+
+from typing import Annotated, NamedTuple
+
+import pydantic
+
+from psph.acts import MATTER, ONE, SEAM, SYMMETRY, TWO
+from psph.engine.jit import register_jitable
+from psph.fields import VECTOR, Field
+from psph.physics.facts import Facts
+from psph.physics.rigid.body import RigidBody
+from psph.physics.walls.conditions import EXTRAPOLATED, MIRROR
+
+ATTRACTION = Field("attraction", "m/s2", "pull of all that moves but rigid bodies, by its mass", VECTOR)
+ATTRACTION_ENERGY = Field("attraction_energy", "J/kg", "half of the potential of that pull")
+PULL_OF_BODIES = Field("pull_of_bodies", "m/s2", "pull of rigid bodies, by their mass", VECTOR)
+
+REACH = 3.0
+"""Softening lengths beyond which the pull is Newton's: the potential of a mass at its own place is −Gm/ε."""
+
+FINE = 0.05
+"""Of ε/|a|, under the root, in a time step."""
+
+FLAT = "needs three dimensions: the mass of a particle in 1D or 2D is one for each m² or m of depth, whose pull"
+FLAT += " falls otherwise with distance; set space.dimensions = 3, or take physics.central_force"
+UNSEEN = "the mass beyond this plane would pull too, and the direct sum does not have it; draw all of the scene"
+BY_WEIGHT = "walls of this condition continue the pressure by the weight alone; take another condition"
+
+
+class SelfGravity(NamedTuple):
+    """All that moves attracts all else, by its mass.
+
+    a_i = −G Σ_j m_j g(r) x_ij, φ_i = −G Σ_j m_j f(r): the fields of a Wendland C2 kernel of the support H = 3ε,
+    beyond which they are Newton's (:func:`softened`).  Fluids, soils, solids and rigid bodies pull and are pulled;
+    walls, and what else moves as it is told, do neither.  Price & Monaghan (2007), Mon. Not. R. Astron. Soc. 374,
+    1347; of ε Plummer (1911).
+    """
+
+    acts = MATTER
+    refuses = {
+        **dict.fromkeys((ONE, TWO), FLAT),
+        SEAM: "the images of a period would pull too; take the axis out of space.periodic",
+        SYMMETRY: UNSEEN,
+        **dict.fromkeys((MIRROR, EXTRAPOLATED), BY_WEIGHT),
+    }
+
+    constant: Annotated[
+        float,
+        pydantic.Field(
+            gt=0,
+            description="G; 6.674e-11 in nature",
+            json_schema_extra={"unit": "m3/(kg s2)"},
+        ),
+    ]
+    softening: Annotated[
+        float,
+        pydantic.Field(
+            gt=0,
+            description="ε: at 0 the potential of a mass m is -Gm/ε, beyond 3ε the pull is Newton's",
+            json_schema_extra={"unit": "m"},
+        ),
+    ]
+
+    def body(self, i):
+        """The pull, m/s², summed before the pass over the neighbours (psph.simulation.attraction)."""
+        return i.attraction
+
+    def potential(self, i):
+        """Half of the potential, J/kg: each pair has its energy once."""
+        return i.attraction_energy
+
+
+class PullOfBodies(NamedTuple):
+    """The same pull, by rigid bodies.
+
+    Its energy is not in the potential of what it pulls, since a body moves: its work is booked.
+    """
+
+    acts = MATTER
+    refuses = SelfGravity.refuses
+
+    constant: float
+    softening: float
+
+    def in_scene(self, scene: Facts):
+        """Itself, where there is a body."""
+        return self if any(isinstance(one.motion, RigidBody) for one in scene.species) else None
+
+    def why_absent(self, scene: Facts):
+        """Why it is not there."""
+        return "there is no rigid body"
+
+    def body(self, i):
+        """The pull, m/s²."""
+        return i.pull_of_bodies
+
+
+@register_jitable
+def softened(r, reach):
+    """g in 1/m³ and f in 1/m at the distance r, m, of a mass whose kernel reaches so far, H.
+
+    With u = r/H below 1 g = (14 − 84u² + 140u³ − 90u⁴ + 21u⁵)/H³, f = (3 − 7u² + 21u⁴ − 28u⁵ + 15u⁶ − 3u⁷)/H;
+    beyond 1/r³ and 1/r, which are the same at u = 1.
+    """
+    newton = 1.0 / max(r, reach)
+    u = r * newton
+    u2 = u * u
+    g = 14.0 + u2 * (-84.0 + u * (140.0 + u * (-90.0 + 21.0 * u)))
+    f = 3.0 + u2 * (-7.0 + u2 * (21.0 + u * (-28.0 + u * (15.0 - 3.0 * u))))
+    return newton * newton * newton * g, newton * f

@@ -1,0 +1,142 @@
+"""Self-gravity by the direct sum: every pair once from each side, in the order of the particles' numbers.
+
+Each rank has all masses, in the same order, and sums those that pull its own particles: so these get the same
+bits on any number of ranks, and the two of a pair opposite forces up to the rounding of a product.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from psph.engine.jit import compiled
+from psph.engine.settled import settled
+from psph.engine.simd import EIGHT, consecutive, spread, total, width_of
+from psph.kinds import Rank, Work
+from psph.parallel.reductions import all_rows
+from psph.physics.motion import ANCHOR, carried_by
+from psph.physics.rigid.body import RigidBody
+from psph.physics.self_gravity import (
+    ATTRACTION,
+    ATTRACTION_ENERGY,
+    PULL_OF_BODIES,
+    REACH,
+    softened,
+)
+from psph.physics.solid.deformation import INERTIA
+from psph.physics.solid.motion import Immersed
+from psph.vectors import add, at, dot, put, scale, subtract
+
+ID, PLACE, MASS, WHOLE, WIDTH = 0, slice(1, 4), 4, 5, 6
+"""Of the rows that ranks exchange: the particle's number, where it is, its mass, and 1 where it goes with a rigid
+body, else 0."""
+
+
+class Masses(NamedTuple):
+    """What pulls, in the order of the particles' numbers: three arrays of ``places``, m, and ``mass``, kg.
+
+    Filled up to whole registers with what has no mass; ``factor`` is G, ``reach`` H in m.
+    """
+
+    places: Any
+    mass: Any
+    factor: float
+    reach: float
+
+
+class DirectSum(Work):
+    """The pulls on the particles of a rank, by all of the scene."""
+
+    name = "attraction"
+
+    def __init__(self, rank: Rank):
+        self.store, self.comm, self.ledger = rank.store, rank.domain.comm, rank.ledger
+        told = rank.scene.case.physics.self_gravity
+        self._factor, self._reach = float(told.constant), REACH * float(told.softening)
+        groups = rank.plan.materials
+        self._whole = groups.where(lambda one: isinstance(carried_by(one.motion), RigidBody))
+        self._immersed = groups.where(lambda one: isinstance(one.motion, Immersed))
+        self._attracted = self._whole | self._immersed | groups.where(lambda one: one.mobile)
+        self._attract, self._held = settled(attract), 0
+
+    def renew(self, simulation) -> None:
+        """Both pulls where all particles stand at the end of a step; collective."""
+        store, bodies = self.store, simulation.engine.of("bodies")
+        with self.ledger("self-gravity"):
+            own, mass = self._own(bodies)
+            rows = all_rows(self.comm, own)
+            rows = rows[np.argsort(rows[:, ID])]
+            self._held = rows.nbytes
+            due = self._attracted.astype(np.uint8), store.group, store["position"]
+            wet = store.low + np.flatnonzero(self._immersed[store.shown("group")])
+            before = store.data[np.ix_(store.rows[ATTRACTION.name], wet)]
+            energy = store[ATTRACTION_ENERGY.name]
+            self._sum(simulation, rows[rows[:, WHOLE] == 0.0], due, ATTRACTION.name, energy)
+            energy[store.inner] += 0.5 * self._factor * REACH / self._reach * mass  # that with itself
+            if bodies:
+                pulled = np.zeros(store.total)
+                self._sum(simulation, rows[rows[:, WHOLE] == 1.0], due, PULL_OF_BODIES.name, pulled)
+            self._catch_up(simulation.dt, wet, before)
+
+    def _sum(self, simulation, rows: np.ndarray, due: tuple, name: str, energy: np.ndarray) -> None:
+        """The pull of the masses in ``rows`` into the field ``name``, and half of their potential."""
+        self._held += rows.nbytes
+        simulation.engine.each(self._attract, self._masses(rows), *due, self.store[name], energy)
+
+    def _masses(self, rows: np.ndarray) -> Masses:
+        count = -(-len(rows) // EIGHT) * EIGHT
+        table = np.zeros((4, count))
+        table[:3, : len(rows)], table[3, : len(rows)] = rows[:, PLACE].T, rows[:, MASS]
+        return Masses(tuple(table[:3]), table[3], self._factor, self._reach)
+
+    def _own(self, bodies) -> tuple[np.ndarray, np.ndarray]:
+        """The rows of this rank's particles that attract (n, WIDTH), and of all of its particles the mass with
+        which they do so beside bodies."""
+        store = self.store
+        group = store.shown("group")
+        mass = store.owned_rows(INERTIA.name if INERTIA.name in store else "mass")
+        if bodies:
+            row = bodies.body_of[group]
+            rigid = row >= 0
+            shares = bodies.masses[row[rigid]]
+            anchor = store.shown(ANCHOR.name)[rigid]
+            mass[rigid] = shares[:, 0] + (shares[:, 1:] * anchor).sum(axis=1)
+        which = self._attracted[group]
+        rows = np.empty((int(which.sum()), WIDTH))
+        rows[:, ID], rows[:, MASS] = store.shown("id")[which], mass[which]
+        rows[:, PLACE], rows[:, WHOLE] = store.shown("position")[which], self._whole[group[which]]
+        return rows, np.where(which & ~self._whole[group], mass, 0.0)
+
+    def _catch_up(self, dt: float, columns: np.ndarray, before: np.ndarray) -> None:
+        """Let solids in a fluid, which have made a step of ``dt`` s under the old pull, have half of it by the
+        new one: the mean of both, as all else gets."""
+        store = self.store
+        more = store.data[np.ix_(store.rows[ATTRACTION.name], columns)] - before
+        for name, share in (("velocity", 0.5 * dt), ("acceleration", 1.0)):
+            store.data[np.ix_(store.rows[name], columns)] += share * more
+
+    def bytes_held(self) -> int:
+        """Bytes of all masses."""
+        return self._held
+
+
+@compiled
+def attract(first, last, masses, attracted, group, position, pull, energy):
+    """a = −G Σ_j m_j g x_ij and ½φ = −½G Σ_j m_j f of the columns ``first`` to ``last`` whose ``group`` is
+    ``attracted``, with themselves: a vector of no length, and an energy that is always the same."""
+    begin, end = np.uint64(0), np.uint64(len(masses.mass))
+    for k in range(np.uint64(first), np.uint64(last)):
+        if not attracted[group[k]]:
+            continue
+        x = at(position, k)
+        sums = spread((0.0, 0.0, 0.0), masses.mass)
+        held = spread(0.0, masses.mass)
+        for n in range(begin, end, width_of(masses.mass)):
+            a, b, c = masses.places
+            there = consecutive(a, n), consecutive(b, n), consecutive(c, n)
+            away = subtract(there, x)
+            g, f = softened(np.sqrt(dot(away, away)), masses.reach)
+            m = consecutive(masses.mass, n)
+            sums = add(sums, scale(away, m * g))
+            held = held + m * f
+        put(pull, k, scale(total(sums), masses.factor))
+        energy[k] = -0.5 * masses.factor * total(held)
