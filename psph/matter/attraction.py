@@ -63,7 +63,7 @@ class Attraction(Kind):
         """Too many particles for a sum over all pairs."""
         if (count := count_of(self.scene)) > MOST:
             yield (
-                f"{self.scene.case.file}: {KEY}: {count:,} particles make {count**2:.2g} pairs a step, about "
+                f"{KEY}: {count:,} particles make {count**2:.2g} pairs a step, about "
                 f"{PAIR * count**2:.2g} s on one core; the direct sum is for {MOST:,}: take a larger "
                 "space.spacing, or more ranks"
             )

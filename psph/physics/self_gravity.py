@@ -18,22 +18,29 @@ PULL_OF_BODIES = Field("pull_of_bodies", "m/s2", "pull of rigid bodies, by their
 REACH = 3.0
 """Softening lengths beyond which the pull is Newton's: the potential of a mass at its own place is −Gm/ε."""
 
+STEEPEST = 0.332
+"""The largest r g ε², at r = 1.14 ε."""
+
 FINE = 0.05
 """Of ε/|a|, under the root, in a time step."""
 
-FLAT = "needs three dimensions: the mass of a particle in 1D or 2D is one for each m² or m of depth, whose pull"
+FLAT = (
+    "needs three dimensions: the mass of a particle in 1D or 2D is one for each m² or m of depth, whose pull"
+)
 FLAT += " falls otherwise with distance; set space.dimensions = 3, or take physics.central_force"
-UNSEEN = "the mass beyond this plane would pull too, and the direct sum does not have it; draw all of the scene"
+UNSEEN = (
+    "the mass beyond this plane would pull too, and the direct sum does not have it; draw all of the scene"
+)
 BY_WEIGHT = "walls of this condition continue the pressure by the weight alone; take another condition"
 
 
 class SelfGravity(NamedTuple):
     """All that moves attracts all else, by its mass.
 
-    a_i = −G Σ_j m_j g(r) x_ij, φ_i = −G Σ_j m_j f(r): the fields of a Wendland C2 kernel of the support H = 3ε,
-    beyond which they are Newton's (:func:`softened`).  Fluids, soils, solids and rigid bodies pull and are pulled;
-    walls, and what else moves as it is told, do neither.  Price & Monaghan (2007), Mon. Not. R. Astron. Soc. 374,
-    1347; of ε Plummer (1911).
+    a_i = −G Σ_j m_j g(r) x_ij, φ_i = −G Σ_j m_j f(r): the fields of a Wendland C2 kernel of the support
+    H = 3ε, beyond which they are Newton's (:func:`softened`).  Fluids, soils, solids and rigid bodies pull
+    and are pulled; walls, and what else moves as it is told, do neither.  Price & Monaghan (2007), Mon. Not.
+    R. Astron. Soc. 374, 1347.
     """
 
     acts = MATTER
@@ -68,6 +75,10 @@ class SelfGravity(NamedTuple):
     def potential(self, i):
         """Half of the potential, J/kg: each pair has its energy once."""
         return i.attraction_energy
+
+    def strongest(self, mass: float) -> float:
+        """The most that a ``mass`` in kg can pull, m/s²: r g has its maximum within the kernel."""
+        return STEEPEST * self.constant * mass / self.softening**2
 
 
 class PullOfBodies(NamedTuple):

@@ -15,20 +15,14 @@ from psph.kinds import Rank, Work
 from psph.parallel.reductions import all_rows
 from psph.physics.motion import ANCHOR, carried_by
 from psph.physics.rigid.body import RigidBody
-from psph.physics.self_gravity import (
-    ATTRACTION,
-    ATTRACTION_ENERGY,
-    PULL_OF_BODIES,
-    REACH,
-    softened,
-)
+from psph.physics.self_gravity import ATTRACTION, ATTRACTION_ENERGY, PULL_OF_BODIES, REACH, softened
 from psph.physics.solid.deformation import INERTIA
 from psph.physics.solid.motion import Immersed
 from psph.vectors import add, at, dot, put, scale, subtract
 
 ID, PLACE, MASS, WHOLE, WIDTH = 0, slice(1, 4), 4, 5, 6
-"""Of the rows that ranks exchange: the particle's number, where it is, its mass, and 1 where it goes with a rigid
-body, else 0."""
+"""Of the rows that ranks exchange: the particle's number, where it is, its mass, and 1 where it goes with a
+rigid body, else 0."""
 
 
 class Masses(NamedTuple):
@@ -68,14 +62,14 @@ class DirectSum(Work):
             self._held = rows.nbytes
             due = self._attracted.astype(np.uint8), store.group, store["position"]
             wet = store.low + np.flatnonzero(self._immersed[store.shown("group")])
-            before = store.data[np.ix_(store.rows[ATTRACTION.name], wet)]
+            before = self._pull(wet)
             energy = store[ATTRACTION_ENERGY.name]
             self._sum(simulation, rows[rows[:, WHOLE] == 0.0], due, ATTRACTION.name, energy)
             energy[store.inner] += 0.5 * self._factor * REACH / self._reach * mass  # that with itself
             if bodies:
                 pulled = np.zeros(store.total)
                 self._sum(simulation, rows[rows[:, WHOLE] == 1.0], due, PULL_OF_BODIES.name, pulled)
-            self._catch_up(simulation.dt, wet, before)
+            self._catch_up(simulation.dt, wet, self._pull(wet) - before)
 
     def _sum(self, simulation, rows: np.ndarray, due: tuple, name: str, energy: np.ndarray) -> None:
         """The pull of the masses in ``rows`` into the field ``name``, and half of their potential."""
@@ -89,8 +83,8 @@ class DirectSum(Work):
         return Masses(tuple(table[:3]), table[3], self._factor, self._reach)
 
     def _own(self, bodies) -> tuple[np.ndarray, np.ndarray]:
-        """The rows of this rank's particles that attract (n, WIDTH), and of all of its particles the mass with
-        which they do so beside bodies."""
+        """The rows of this rank's particles that attract (n, WIDTH), and of all of its particles the mass
+        with which they do so beside bodies."""
         store = self.store
         group = store.shown("group")
         mass = store.owned_rows(INERTIA.name if INERTIA.name in store else "mass")
@@ -106,11 +100,16 @@ class DirectSum(Work):
         rows[:, PLACE], rows[:, WHOLE] = store.shown("position")[which], self._whole[group[which]]
         return rows, np.where(which & ~self._whole[group], mass, 0.0)
 
-    def _catch_up(self, dt: float, columns: np.ndarray, before: np.ndarray) -> None:
-        """Let solids in a fluid, which have made a step of ``dt`` s under the old pull, have half of it by the
-        new one: the mean of both, as all else gets."""
+    def _pull(self, columns: np.ndarray) -> np.ndarray:
+        """All pulls on some columns, m/s² (dim, n)."""
         store = self.store
-        more = store.data[np.ix_(store.rows[ATTRACTION.name], columns)] - before
+        names = (name for name in (ATTRACTION.name, PULL_OF_BODIES.name) if name in store)
+        return sum(store.data[np.ix_(store.rows[name], columns)] for name in names)
+
+    def _catch_up(self, dt: float, columns: np.ndarray, more: np.ndarray) -> None:
+        """Let solids in a fluid, which have made a step of ``dt`` s under the old pull, have half of what is
+        ``more`` in the new one: the mean of both, as all else gets."""
+        store = self.store
         for name, share in (("velocity", 0.5 * dt), ("acceleration", 1.0)):
             store.data[np.ix_(store.rows[name], columns)] += share * more
 

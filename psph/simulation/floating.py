@@ -20,8 +20,8 @@ from psph.simulation.solid_plan import solid_plan
 from psph.simulation.touching import Contacts
 
 BITS = 58
-"""Of whole numbers of 64 bits, for a push of ρ₀c², or of the modulus of a solid, on all particles of bodies:
-room for sixteen times that."""
+"""Of whole numbers of 64 bits, for a push of ρ₀c², of the modulus of a solid, or of the strongest pull, on
+all particles of bodies: room for sixteen times that."""
 
 
 class FloatingBodies(Work):
@@ -54,7 +54,8 @@ class FloatingBodies(Work):
         pressure = max(pressure, *(one.wave_modulus for one in scene.species))
         count = int(scene.census.sizes[list(scene.layout.parts.bodies)].sum())
         units = 2.0 ** (BITS - count.bit_length())
-        force = pressure * scene.spacing ** (scene.dimensions - 1) / units
+        force = pressure * scene.spacing ** (scene.dimensions - 1)
+        force = max(force, _strongest_pull(scene, plan.pulls.whole, own)) / units
         self.units = (force, force * max(up - low for low, up in zip(scene.layout.lower, scene.layout.upper)))
         self._scene, self._plan, self._push = scene, plan, settled(add_pushes)
         self._riders = Riders(plan, own) if solid_plan(plan).riding.any() else None
@@ -173,3 +174,15 @@ class FloatingBodies(Work):
         if self.joints:
             pull, twist = (a + b for a, b in zip((pull, twist), self.joints.pulls(self.bodies)))
         self.bodies.load(total[:, :3] * self.units[0] + pull, total[:, 3:] * self.units[1] + twist)
+
+
+def _strongest_pull(scene, pulls: Sequence, bodies: Sequence[RigidBody]) -> float:
+    """The most that body forces which know a bound give a particle of some ``bodies``, N."""
+    census, numbers = scene.census, scene.layout.parts.bodies
+    known = [one.strongest for one in pulls if hasattr(one, "strongest")]
+    if not known:
+        return 0.0
+    whole = sum(float(n) * one.inertia for n, one in zip(census.sizes, scene.species))
+    whole += sum(body.mass for body in bodies)
+    each = max(body.mass / float(census.sizes[number]) for body, number in zip(bodies, numbers))
+    return each * sum(strongest(whole) for strongest in known)

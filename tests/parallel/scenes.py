@@ -173,6 +173,7 @@ FAMILIES = {
     "mixed mud": Family(
         2, along="y", periodic="xy", fluids=2, muddy=True, precision="mixed", scheme="sph", physics=GRAVITY
     ),
+    "drops in space": Family(3, along="y", physics={"self_gravity": (0.0, 2e-3)}),
 }
 
 FAMILIES |= {
@@ -340,6 +341,8 @@ def _physics(family: Family, rng) -> dict:
             value = _vector(rng, family.dimensions, 10.0)
         elif name == "central_force":
             value = {"frequency": _drawn(rng, *value), "center": [1.0] * family.dimensions}
+        elif name == "self_gravity":
+            value = {"constant": _drawn(rng, *value), "softening": SPACING}
         found[name] = _drawn(rng, *value) if isinstance(value, tuple) else value
     return found
 
