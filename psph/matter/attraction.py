@@ -12,7 +12,7 @@ from psph.physics.self_gravity import ATTRACTION, ATTRACTION_ENERGY, FINE, PULL_
 MOST = 20_000
 """Particles for which a sum over all pairs takes about a second on one core."""
 
-PAIR = 2e-9
+PAIR = 2.4e-9
 """Seconds of a pair on a core: by docs/gravity.md."""
 
 KEY = "physics.self_gravity"

@@ -215,4 +215,4 @@ def test_what_it_does_not_know_is_refused_in_a_line(tmp_path, changes, says):
 def test_many_particles_are_warned_of_with_the_cost(tmp_path):
     case = draft(tmp_path, BALL, "fluids.water.shape.ball.radius=1.75")
     [line] = [one for one in warnings(Scene(case)) if "self_gravity" in one]
-    assert "about 1 s on one core" in line and "take a larger space.spacing" in line
+    assert "about 1.2 s on one core" in line and "take a larger space.spacing" in line
