@@ -43,8 +43,7 @@ class Stage(NamedTuple):
 
 
 class Rank(NamedTuple):
-    """What the work of a kind may use on a rank: ``scene`` and ``plan``, the ``store`` of its particles, the
-    ``domain`` (psph.parallel.domain), and the ``ledger`` of seconds."""
+    """What the work of a kind may use on a rank; its ``store`` has the particles, ``ledger`` counts seconds."""
 
     scene: Any
     plan: Any
@@ -114,6 +113,9 @@ class Work:
     def measure(self) -> None:
         """Bring up to date what is written of it at the end of the step."""
 
+    def weigh(self, store: Any, mass: np.ndarray) -> None:
+        """Put the true ``mass`` (owned,), kg, of its own in the ``store`` where that carries another."""
+
     def with_pressure(self, pressure: np.ndarray) -> np.ndarray:
         """The ``pressure`` (owned,) of a rank's particles, Pa, with that of this kind."""
         return pressure
@@ -135,8 +137,7 @@ class Work:
         raise NotImplementedError
 
     def summary(self, poses: Any, lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
-        """Lines at the end of a run: what has left the walls between ``lower`` and ``upper``, m; ``poses``
-        (psph.simulation.poses) are those of rigid motions."""
+        """Lines at the end of a run, by the ``poses``: what has left the walls from ``lower`` to ``upper``, m."""
         yield from ()
 
     def passed(self) -> Iterator[str]:
@@ -243,8 +244,7 @@ class Kind:
 
     @classmethod
     def layers(cls, census: Any) -> Mapping[int, Any]:
-        """How each of its parts starts that is under its own weight, by the number of the part: values with a
-        ``pressure(position)`` and its ``highest`` in Pa."""
+        """How parts under their own weight start, by number: ``pressure(position)`` and ``highest`` in Pa."""
         return {}
 
     @classmethod
@@ -315,8 +315,7 @@ class Kind:
         return ()
 
     def own_pass(self, called: Sequence, stored: Sequence[str]) -> Any:
-        """A pass over neighbours within steps of its own (psph.simulation.passes), of the effects ``called``
-        for and with the arrays ``stored``; None: it has none."""
+        """A pass within steps of its own (psph.simulation.passes) of those ``called``; None: it has none."""
         return None
 
     def loads(self, passes: Sequence) -> Any:

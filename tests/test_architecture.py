@@ -59,6 +59,7 @@ LATE = {
     "psph/case/given.py": 1,
     "psph/case/loader.py": 5,
     "psph/lab/bench/command.py": 1,
+    "psph/matter/attraction.py": 1,
     "psph/matter/body.py": 1,
     "psph/matter/end.py": 1,
     "psph/matter/solid.py": 5,

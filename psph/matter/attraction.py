@@ -7,7 +7,7 @@ from typing import ClassVar
 from psph.fields import Field
 from psph.kinds import Kind, Rank, Stage, Work, count_of
 from psph.physics.rigid.body import RigidBody
-from psph.physics.self_gravity import ATTRACTION, ATTRACTION_ENERGY, FINE, PULL_OF_BODIES
+from psph.physics.self_gravity import ATTRACTION, ATTRACTION_ENERGY, FINE, WHOLE_ATTRACTION, is_whole
 
 MOST = 20_000
 """Particles for which a sum over all pairs takes about a second on one core."""
@@ -46,8 +46,8 @@ class Attraction(Kind):
     @property
     def fields(self) -> tuple[Field, ...]:
         """The pulls, and the energy."""
-        whole = any(isinstance(one.motion, RigidBody) for one in self.scene.species)
-        return (ATTRACTION, ATTRACTION_ENERGY, *([PULL_OF_BODIES] * whole))
+        whole = any(is_whole(one.motion) for one in self.scene.species)
+        return (ATTRACTION, ATTRACTION_ENERGY, *([WHOLE_ATTRACTION] * whole))
 
     @property
     def bears_midway(self) -> bool:

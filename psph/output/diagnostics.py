@@ -108,6 +108,11 @@ def moving_mass(comm: MPI.Comm, store: Store) -> float:
     return float(exact_sums(comm, mass[:, None])[0])
 
 
+def true_mass(store: Store) -> np.ndarray:
+    """The mass (owned,) that forces move, kg: a copy."""
+    return store.owned_rows(_inert(store))
+
+
 def _inert(store: Store) -> str:
     """The name of the mass that forces move: in a fluid solids show another one."""
     return "inertia" if "inertia" in store else "mass"

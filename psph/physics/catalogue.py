@@ -38,7 +38,7 @@ from psph.physics.gas.shocks import FastestSignal, HeatConduction, ShockViscosit
 from psph.physics.order.potential import LocalPotential
 from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
-from psph.physics.self_gravity import PullOfBodies, SelfGravity
+from psph.physics.self_gravity import SelfGravity, WholeAttraction
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.contact import SolidContact
 from psph.physics.solid.rubber import MooneyRivlin, Ogden
@@ -157,7 +157,7 @@ CATALOGUE = (
     Entry("physics.gravity", Gravity),
     Entry("physics.central_force", CentralForce),
     Entry("physics.self_gravity", SelfGravity),
-    Entry("physics.self_gravity", PullOfBodies),
+    Entry("physics.self_gravity", WholeAttraction),
     Entry("physics.damping_zone", DampingZone),
     Entry("physics.other_damping_zone", OtherDampingZone),
     Entry("frame.motion", MovingFrame),

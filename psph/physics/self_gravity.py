@@ -8,12 +8,12 @@ from psph.acts import MATTER, ONE, SEAM, SYMMETRY, TWO
 from psph.engine.jit import register_jitable
 from psph.fields import VECTOR, Field
 from psph.physics.facts import Facts
-from psph.physics.rigid.body import RigidBody
+from psph.physics.motion import goes_free, is_free, is_rigid
 from psph.physics.walls.conditions import EXTRAPOLATED, MIRROR
 
-ATTRACTION = Field("attraction", "m/s2", "pull of all that moves but rigid bodies, by its mass", VECTOR)
+ATTRACTION = Field("attraction", "m/s2", "pull of all mass that does not move as a whole", VECTOR)
 ATTRACTION_ENERGY = Field("attraction_energy", "J/kg", "half of the potential of that pull")
-PULL_OF_BODIES = Field("pull_of_bodies", "m/s2", "pull of rigid bodies, by their mass", VECTOR)
+WHOLE_ATTRACTION = Field("whole_attraction", "m/s2", "pull of all mass that moves as a whole", VECTOR)
 
 REACH = 3.0
 """Softening lengths beyond which the pull is Newton's: the potential of a mass at its own place is −Gm/ε."""
@@ -81,10 +81,10 @@ class SelfGravity(NamedTuple):
         return STEEPEST * self.constant * mass / self.softening**2
 
 
-class PullOfBodies(NamedTuple):
-    """The same pull, by rigid bodies.
+class WholeAttraction(NamedTuple):
+    """The same pull, by what moves as a whole.
 
-    Its energy is not in the potential of what it pulls, since a body moves: its work is booked.
+    Its energy is not in the potential of what it pulls, since the whole moves: its work is booked.
     """
 
     acts = MATTER
@@ -94,16 +94,26 @@ class PullOfBodies(NamedTuple):
     softening: float
 
     def in_scene(self, scene: Facts):
-        """Itself, where there is a body."""
-        return self if any(isinstance(one.motion, RigidBody) for one in scene.species) else None
+        """Itself, where something moves so."""
+        return self if any(is_whole(one.motion) for one in scene.species) else None
 
     def why_absent(self, scene: Facts):
         """Why it is not there."""
-        return "there is no rigid body"
+        return "nothing moves as a whole"
 
     def body(self, i):
         """The pull, m/s²."""
-        return i.pull_of_bodies
+        return i.whole_attraction
+
+
+def is_whole(motion) -> bool:
+    """Whether forces move particles with such a motion (psph.physics.motion) as a whole."""
+    return is_rigid(motion) and goes_free(motion)
+
+
+def has_own_steps(motion) -> bool:
+    """Whether forces move them, and neither the step of the engine nor a pose does."""
+    return goes_free(motion) and not is_free(motion) and not is_rigid(motion)
 
 
 @register_jitable

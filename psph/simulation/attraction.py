@@ -12,17 +12,23 @@ from psph.engine.jit import compiled
 from psph.engine.settled import settled
 from psph.engine.simd import EIGHT, consecutive, spread, total, width_of
 from psph.kinds import Rank, Work
+from psph.output.diagnostics import true_mass
 from psph.parallel.reductions import all_rows
-from psph.physics.motion import ANCHOR, carried_by
-from psph.physics.rigid.body import RigidBody
-from psph.physics.self_gravity import ATTRACTION, ATTRACTION_ENERGY, PULL_OF_BODIES, REACH, softened
-from psph.physics.solid.deformation import INERTIA
-from psph.physics.solid.motion import Immersed
+from psph.physics.motion import is_free
+from psph.physics.self_gravity import (
+    ATTRACTION,
+    ATTRACTION_ENERGY,
+    REACH,
+    WHOLE_ATTRACTION,
+    has_own_steps,
+    is_whole,
+    softened,
+)
 from psph.vectors import add, at, dot, put, scale, subtract
 
 ID, PLACE, MASS, WHOLE, WIDTH = 0, slice(1, 4), 4, 5, 6
-"""Of the rows that ranks exchange: the particle's number, where it is, its mass, and 1 where it goes with a
-rigid body, else 0."""
+"""Of the rows that ranks exchange: the particle's number, where it is, its mass, and 1 where it moves as
+a whole, else 0."""
 
 
 class Masses(NamedTuple):
@@ -47,34 +53,29 @@ class DirectSum(Work):
         told = rank.scene.case.physics.self_gravity
         self._factor, self._reach = float(told.constant), REACH * float(told.softening)
         groups = rank.plan.materials
-        self._whole = groups.where(lambda one: isinstance(carried_by(one.motion), RigidBody))
-        self._immersed = groups.where(lambda one: isinstance(one.motion, Immersed))
-        self._attracted = self._whole | self._immersed | groups.where(lambda one: one.mobile)
+        self._whole = groups.where(lambda one: is_whole(one.motion))
+        self._ahead = groups.where(lambda one: has_own_steps(one.motion))
+        self._attracted = self._whole | self._ahead | groups.where(lambda one: is_free(one.motion))
         self._attract, self._held = settled(attract), 0
 
     def renew(self, simulation) -> None:
         """Both pulls where all particles stand at the end of a step; collective."""
-        store, bodies = self.store, simulation.engine.of("bodies")
+        store, each = self.store, simulation.engine.each
         with self.ledger("self-gravity"):
-            own, mass = self._own(bodies)
+            own, mass = self._own(simulation.engine.kinds)
             rows = all_rows(self.comm, own)
             rows = rows[np.argsort(rows[:, ID])]
-            self._held = rows.nbytes
+            self._held = 2 * rows.nbytes
             due = self._attracted.astype(np.uint8), store.group, store["position"]
-            wet = store.low + np.flatnonzero(self._immersed[store.shown("group")])
-            before = self._pull(wet)
-            energy = store[ATTRACTION_ENERGY.name]
-            self._sum(simulation, rows[rows[:, WHOLE] == 0.0], due, ATTRACTION.name, energy)
+            ahead = store.low + np.flatnonzero(self._ahead[store.shown("group")])
+            before, energy = self._pull(ahead), store[ATTRACTION_ENERGY.name]
+            parts = self._masses(rows[rows[:, WHOLE] == 0.0])
+            each(self._attract, parts, *due, store[ATTRACTION.name], energy)
             energy[store.inner] += 0.5 * self._factor * REACH / self._reach * mass  # that with itself
-            if bodies:
-                pulled = np.zeros(store.total)
-                self._sum(simulation, rows[rows[:, WHOLE] == 1.0], due, PULL_OF_BODIES.name, pulled)
-            self._catch_up(simulation.dt, wet, self._pull(wet) - before)
-
-    def _sum(self, simulation, rows: np.ndarray, due: tuple, name: str, energy: np.ndarray) -> None:
-        """The pull of the masses in ``rows`` into the field ``name``, and half of their potential."""
-        self._held += rows.nbytes
-        simulation.engine.each(self._attract, self._masses(rows), *due, self.store[name], energy)
+            if WHOLE_ATTRACTION.name in store:
+                wholes = self._masses(rows[rows[:, WHOLE] == 1.0])
+                each(self._attract, wholes, *due, store[WHOLE_ATTRACTION.name], np.zeros(store.total))
+            self._catch_up(simulation.dt, ahead, self._pull(ahead) - before)
 
     def _masses(self, rows: np.ndarray) -> Masses:
         count = -(-len(rows) // EIGHT) * EIGHT
@@ -82,18 +83,13 @@ class DirectSum(Work):
         table[:3, : len(rows)], table[3, : len(rows)] = rows[:, PLACE].T, rows[:, MASS]
         return Masses(tuple(table[:3]), table[3], self._factor, self._reach)
 
-    def _own(self, bodies) -> tuple[np.ndarray, np.ndarray]:
+    def _own(self, kinds) -> tuple[np.ndarray, np.ndarray]:
         """The rows of this rank's particles that attract (n, WIDTH), and of all of its particles the mass
-        with which they do so beside bodies."""
+        with which they do so without moving as a whole; the works of ``kinds`` know some masses."""
         store = self.store
-        group = store.shown("group")
-        mass = store.owned_rows(INERTIA.name if INERTIA.name in store else "mass")
-        if bodies:
-            row = bodies.body_of[group]
-            rigid = row >= 0
-            shares = bodies.masses[row[rigid]]
-            anchor = store.shown(ANCHOR.name)[rigid]
-            mass[rigid] = shares[:, 0] + (shares[:, 1:] * anchor).sum(axis=1)
+        group, mass = store.shown("group"), true_mass(store)
+        for kind in kinds:
+            kind.weigh(store, mass)
         which = self._attracted[group]
         rows = np.empty((int(which.sum()), WIDTH))
         rows[:, ID], rows[:, MASS] = store.shown("id")[which], mass[which]
@@ -103,7 +99,7 @@ class DirectSum(Work):
     def _pull(self, columns: np.ndarray) -> np.ndarray:
         """All pulls on some columns, m/s² (dim, n)."""
         store = self.store
-        names = (name for name in (ATTRACTION.name, PULL_OF_BODIES.name) if name in store)
+        names = (name for name in (ATTRACTION.name, WHOLE_ATTRACTION.name) if name in store)
         return sum(store.data[np.ix_(store.rows[name], columns)] for name in names)
 
     def _catch_up(self, dt: float, columns: np.ndarray, more: np.ndarray) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from psph.engine.settled import settled
 from psph.kinds import Work
 from psph.parallel.reductions import whole_sums
+from psph.physics.motion import ANCHOR
 from psph.physics.rigid.bodies import Bodies, crossing
 from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.joints import Joints
@@ -106,6 +107,13 @@ class FloatingBodies(Work):
             return found
         joint = self.joints.joints[number]
         return wide, joint.body, f"joints.{joint.name} gapes by {wide:.3g} m: something else moves its parts"
+
+    def weigh(self, store, mass: np.ndarray) -> None:
+        """By the shares of each particle, where body forces ask for them."""
+        row = self.body_of[store.shown("group")]
+        if self.masses is not None and (own := row >= 0).any():
+            shares, start = self.masses[row[own]], store.shown(ANCHOR.name)[own]
+            mass[own] = shares[:, 0] + (shares[:, 1:] * start).sum(axis=1)
 
     def pushing(self, groups: Sequence[int], about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and moment of the contacts of bodies among the groups."""

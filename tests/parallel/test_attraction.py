@@ -47,7 +47,7 @@ def three(folder):
 def rows(simulation):
     """All particles by id."""
     store = simulation.store
-    names = "position", "velocity", "density", "attraction", "attraction_energy", "pull_of_bodies"
+    names = "position", "velocity", "density", "attraction", "attraction_energy", "whole_attraction"
     parts = [store.owned_rows("id")[:, None], *(store.owned_rows(n).reshape(store.owned, -1) for n in names)]
     every = np.concatenate(simulation.comm.allgather(np.hstack(parts)))
     return every[np.argsort(every[:, 0])]
