@@ -43,7 +43,7 @@ class Stage(NamedTuple):
 
 
 class Rank(NamedTuple):
-    """What the work of a kind may use on a rank; its ``store`` has the particles, ``ledger`` counts seconds."""
+    """What the work of a kind may use on a rank: the ``store`` has particles, the ``ledger`` seconds."""
 
     scene: Any
     plan: Any
@@ -137,7 +137,7 @@ class Work:
         raise NotImplementedError
 
     def summary(self, poses: Any, lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
-        """Lines at the end of a run, by the ``poses``: what has left the walls from ``lower`` to ``upper``, m."""
+        """Lines at the end of a run, by ``poses``: what has left the walls from ``lower`` to ``upper``, m."""
         yield from ()
 
     def passed(self) -> Iterator[str]:
