@@ -14,6 +14,9 @@ from psph.physics.walls.conditions import CONDITIONS
 FINEST = 16
 """Of how many parts of the scene's spacing that of a gas may be one, along an axis."""
 
+FEWEST = 1.1
+"""Least h n^(1/d): with less a particle alone has all the neighbours that are asked for."""
+
 SAME = 1e-6
 """How near rounding has to be."""
 
@@ -62,22 +65,11 @@ class IdealGas(FreeMatter):
 
     @classmethod
     def contradictions(cls, case) -> Iterator[Finding]:
-        """Gases whose state or sites are not told, schemes and kernels made for others, and regions."""
+        """Gases whose state or sites are not told, and what was made for others."""
         if not case.ideal_gases:
             return
-        if case.scheme != GAS:
-            yield ("scheme",), case.scheme, f'it is not made for ideal gases; give scheme = "{GAS}"'
+        yield from _beside(case)
         space = case.space
-        if space.kernel not in REPELLING:
-            yield (
-                ("space", "kernel"),
-                space.kernel,
-                f"not for ideal gases; give one of {', '.join(REPELLING)}",
-            )
-        if space.normalised:
-            yield ("space", "normalised"), True, "smoothing lengths vary; remove this key"
-        if getattr(case, "regions", None):
-            yield ("regions",), ..., "nothing is known of regions in ideal gases; remove the one or the other"
         for name, gas in case.ideal_gases.items():
             here = ("ideal_gases", name)
             if (gas.pressure is None) == (gas.thermal_energy is None):
@@ -112,3 +104,25 @@ class IdealGas(FreeMatter):
     def settled(self) -> Self:
         """The same, with the pressure that follows from the thermal energy."""
         return self.model_copy(update={"pressure": (self.gamma - 1.0) * self.density * self.heat})
+
+
+def _beside(case) -> Iterator[Finding]:
+    """What a case with gases has that knows nothing of them."""
+    space = case.space
+    if case.scheme != GAS:
+        yield ("scheme",), case.scheme, f'it is not made for ideal gases; give scheme = "{GAS}"'
+    if space.kernel not in REPELLING:
+        yield ("space", "kernel"), space.kernel, f"not for ideal gases; give one of {', '.join(REPELLING)}"
+    if space.smoothing < FEWEST:
+        yield ("space", "smoothing"), space.smoothing, f"too few neighbours; give {FEWEST:g} or more"
+    if space.normalised:
+        yield ("space", "normalised"), True, "smoothing lengths vary; remove this key"
+    if case.physics.sound_speed is not None:
+        says = "ideal gases have a speed of sound of their own, by pressure and density; remove this key"
+        yield ("physics", "sound_speed"), case.physics.sound_speed, says
+    for table in ("regions", "probes"):
+        if getattr(case, table, None):
+            yield (table,), ..., f"nothing is known of {table} in ideal gases; remove the one or the other"
+    for name, value in case.exact:
+        if value is not None:
+            yield ("exact", name), ..., "no exact solution is known of ideal gases; remove this table"

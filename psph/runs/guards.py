@@ -53,7 +53,6 @@ class Guards:
         bears_none = any(hasattr(effect, "bearing_density") for effect in simulation.plan.effects)
         self._slack = bears_none & (np.arange(len(materials.law_of)) >= materials.free)
         self._books = not unbooked and all(kind.keeps_energy for kind in simulation.plan.matter)
-        self._stiff = all(kind.is_stiff for kind in simulation.plan.matter)
         self._walls = [(WallRegion(scene), None)]
         self._walls += [(WallRegion(scene, one), row) for row, one in enumerate(materials.rigid)]
         self.seen: Counter[str] = Counter()
@@ -131,9 +130,10 @@ class Guards:
     def _tripped(self) -> Iterator[str]:
         """The keys of the guards whose bounds the last step has passed."""
         simulation, bounds = self.simulation, self.bounds
-        if self._stiff and simulation.fluid_speed > bounds.speed * self.scene.sound_speed:
+        stiff = simulation.plan.is_stiff
+        if stiff and simulation.fluid_speed > bounds.speed * self.scene.sound_speed:
             yield "speed"
-        if self._stiff and simulation.strain > bounds.density:
+        if stiff and simulation.strain > bounds.density:
             yield "density"
         if simulation.steps % EVERY == 0:
             with simulation.ledger("guards"):

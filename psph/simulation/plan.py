@@ -127,6 +127,11 @@ class Plan:
         """The kind of matter of that name, or None."""
         return next((kind for kind in self.matter if kind.name == name), None)
 
+    @cached_property
+    def is_stiff(self) -> bool:
+        """Whether density and speed of all that is in the scene stay near those at rest."""
+        return all(kind.is_stiff for kind in self.matter)
+
     @property
     def sizes(self) -> Sizes | None:
         """How far particles reach by lengths of their own, of the kind of matter that has them; else None."""

@@ -203,6 +203,42 @@ def test_sods_tube_and_what_it_is_without_viscosity_and_without_conduction():
     assert np.abs(blip[1][near] / exact.pressure - 1.0).max() > 0.2
 
 
+def test_cold_gases_that_meet_are_four_times_as_dense(tmp_path):
+    """Noh (1987): ρ = ((γ + 1)/(γ − 1))^d behind shocks that run back at 1/3; the middle is too hot."""
+    path = tmp_path / "noh.toml"
+    path.write_text("""
+scheme = "gas"
+[space]
+dimensions = 1
+spacing = 0.02
+periodic = ["x"]
+lower = [-2.0]
+upper = [2.0]
+[time]
+end = 0.6
+[ideal_gases.left]
+shape.box = { lower = [-1.0], upper = [0.0] }
+density = 1.0
+pressure = 1e-6
+gamma = 1.6666666666666667
+velocity = [1.0]
+[ideal_gases.right]
+shape.box = { lower = [0.0], upper = [1.0] }
+density = 1.0
+pressure = 1e-6
+gamma = 1.6666666666666667
+velocity = [-1.0]
+""")
+    simulation = start(load(path))
+    while simulation.time < 0.6:
+        simulation.step(0.6)
+    x, rho = of(simulation, "position", "density")
+    behind = (abs(x[:, 0]) > 0.04) & (abs(x[:, 0]) < 0.14)
+    assert rho[behind].mean() == pytest.approx(4.0, rel=0.02)
+    front = abs(x[rho > 2.5, 0]).max()
+    assert front == pytest.approx(0.2, abs=0.02)
+
+
 def test_what_gases_do_not_know_is_refused_in_a_line(tmp_path):
     path = tmp_path / "cloud.toml"
     path.write_text(CLOUD)
@@ -215,6 +251,10 @@ def test_what_gases_do_not_know_is_refused_in_a_line(tmp_path):
         ("walls.floor.shape.box={ lower = [0.0, -0.3], upper = [1.6, 0.0] }",): "wall",
         ("fluids.water.shape.box={ lower = [0.0, 2.0], upper = [1.6, 3.0] }",): "remove one of the two",
         ('space.kernel="hyperbolic"',): "space.kernel",
+        ("space.smoothing=0.8",): "space.smoothing: 0.8: too few neighbours; give 1.1 or more",
+        ("physics.sound_speed=10.0",): "physics.sound_speed.*of their own",
+        ("probes.p.position=[0.5, 0.5]",): "probes: nothing is known of probes in ideal gases",
+        ("exact.elliptic_drop.strain=1.0",): "exact.elliptic_drop",
     }.items():
         with pytest.raises(CaseError, match=says):
             load(path, sets)
