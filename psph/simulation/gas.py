@@ -60,7 +60,7 @@ class Gases(Work):
         self._gamma, self._pressure, self._pace = gamma, pressure, pace
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
-        self._asked = Numbers(target, kernel, GROWTH, tuple(scene.layout.periods))
+        self._asked = Numbers(target, kernel, kernel.support, GROWTH, tuple(scene.layout.periods))
 
     def fit(self) -> bool:
         """Find smoothing lengths and densities; whether lists reach far enough for that.  Collective.

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise, inside
+from psph.engine.jit import compiled, elementwise, inside
 from psph.smoothing import slope, weight
 from psph.vectors import at, dot, nearest_image, subtract
 
@@ -27,11 +27,12 @@ FOUND, OUTGROWN, NONE = 0, 1, 2
 
 
 class Numbers(NamedTuple):
-    """What is asked: ``target`` η^d, a ``kernel`` with h = 1 m, how far h may exceed that of the lists,
-    ``growth``, and the ``periods``, m."""
+    """What is asked: ``target`` η^d, a ``kernel`` with h = 1 m and its ``support``, how far h may exceed that
+    of the lists, ``growth``, and the ``periods``, m."""
 
     target: float
     kernel: object
+    support: float
     growth: float
     periods: tuple
 
@@ -47,38 +48,50 @@ class Lengths(NamedTuple):
 
 
 @inside
-def distance(k, j, position, periods):
-    """|x_k − x_j| to the nearest image, m."""
-    x = nearest_image(subtract(at(position, k), at(position, j)), periods)
-    return np.sqrt(dot(x, x))
+def gather(k, row, farthest, periods, lists, position, mass, near):
+    """Distance, m, and mass, kg, of the neighbours of ``k`` within ``farthest`` m, into the rows of ``near``
+    (2, most); how many there are."""
+    many = 0
+    for entry in range(lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])):
+        j = np.uint64(lists.lists[entry])
+        x = nearest_image(subtract(at(position, k), at(position, j)), periods)
+        r2 = dot(x, x)
+        if r2 < farthest * farthest:
+            near[0, many], near[1, many] = np.sqrt(r2), mass[j]
+            many += 1
+    return many
 
 
 @inside
-def count(k, row, h, asked, lists, position):
-    """n h^d of particle ``k`` with the smoothing length ``h``, and by how much it grows with ln h."""
-    inverse, number, growing = 1.0 / h, weight(asked.kernel, 0.0), 0.0
-    for entry in range(lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])):
-        s = distance(k, np.uint64(lists.lists[entry]), position, asked.periods) * inverse
-        number += weight(asked.kernel, s)
-        growing -= s * slope(asked.kernel, s)
+def count(h, kernel, near, many):
+    """n h^d of a particle with the smoothing length ``h``, and by how much it grows with ln h."""
+    inverse, number, growing = 1.0 / h, weight(kernel, 0.0), 0.0
+    for n in range(many):
+        s = near[0, n] * inverse
+        number += weight(kernel, s)
+        growing -= s * slope(kernel, s)
     return number, growing
 
 
-@elementwise
-def find_lengths(first, last, low, asked, lists, position, mass, listed, sums):
+@compiled
+def find_lengths(first, last, low, asked, lists, position, mass, listed, found):
     """Find h, ρ and q of the particles in columns ``first`` to ``last`` from their last h.
 
     ``mass`` (columns,), kg, ``listed`` (columns,) the h of the lists, m.  Where all neighbours stand in one
-    place with a particle, any h would do, and it stays.
+    place with a particle, any h would do, and it stays.  Sums are over a row alone, in its order: the same
+    wherever a slab begins.
     """
-    d = len(position)
+    d, kernel, near = len(position), asked.kernel, np.empty((2, 0))
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
+        if lists.lengths[row] > near.shape[1]:
+            near = np.empty((2, 2 * np.int64(lists.lengths[row])))
         most = asked.growth * listed[k]
-        h, smallest, largest, came = min(sums.length[k], most), 0.0, np.inf, NONE
-        number = growing = 0.0
+        many = gather(k, row, asked.support * most, asked.periods, lists, position, mass, near)
+        h, smallest, largest, came = min(found.length[k], most), 0.0, np.inf, NONE
+        growing = 0.0
         for _ in range(MOST_TURNS):
-            number, growing = count(k, row, h, asked, lists, position)
+            number, growing = count(h, kernel, near, many)
             lacks = asked.target - number
             if growing > 0.0:
                 change = min(max(lacks / growing, -MOST_CHANGE), MOST_CHANGE)
@@ -98,19 +111,18 @@ def find_lengths(first, last, low, asked, lists, position, mass, listed, sums):
             if not smallest < wanted < largest:
                 wanted = 0.5 * (smallest + largest)
             h = min(wanted, most)
-        sums.length[k], sums.came[k] = h, came
+        found.length[k], found.came[k] = h, came
         if came == FOUND:
             inverse = 1.0 / h
-            rho, rising = mass[k] * weight(asked.kernel, 0.0), 0.0
-            for entry in range(lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])):
-                j = np.uint64(lists.lists[entry])
-                s = distance(k, j, position, asked.periods) * inverse
-                rho += mass[j] * weight(asked.kernel, s)
-                rising -= mass[j] * s * slope(asked.kernel, s)
+            rho, rising = mass[k] * weight(kernel, 0.0), 0.0
+            for n in range(many):
+                s = near[0, n] * inverse
+                rho += near[1, n] * weight(kernel, s)
+                rising -= near[1, n] * s * slope(kernel, s)
             # ∂ρ/∂h = (rising − d ρ)/h in these units, and d n Ω = growing
-            sums.unequal[k] = (d * rho - rising) / -growing if growing > 0.0 else 0.0
+            found.unequal[k] = (d * rho - rising) / -growing if growing > 0.0 else 0.0
             rho *= inverse**d
-            sums.density[k], sums.specific_volume[k] = rho, 1.0 / rho
+            found.density[k], found.specific_volume[k] = rho, 1.0 / rho
 
 
 @elementwise
