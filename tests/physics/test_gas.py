@@ -203,6 +203,21 @@ def test_sods_tube_and_what_it_is_without_viscosity_and_without_conduction():
     assert np.abs(blip[1][near] / exact.pressure - 1.0).max() > 0.2
 
 
+def test_a_tube_that_moves_is_the_same_tube():
+    """Lists are made at other times, and h is found to 1e-6."""
+    found = []
+    for speed in (0.0, 10.0):
+        sets = (f"ideal_gases.{name}.velocity=[{speed}]" for name in ("dense", "thin"))
+        simulation = start(load(Path(CASES) / "gas/sod.toml", tuple(sets)))
+        while simulation.time < 0.05:
+            simulation.step(0.05)
+        number, rho, v = of(simulation, "id", "density", "velocity")
+        found.append((rho[np.argsort(number)], v[np.argsort(number), 0] - speed))
+    assert np.abs(found[0][1]).max() > 0.9
+    for one, other in zip(*found):
+        assert np.abs(one - other).max() < 1e-6
+
+
 def test_cold_gases_that_meet_are_four_times_as_dense(tmp_path):
     """Noh (1987): ρ = ((γ + 1)/(γ − 1))^d behind shocks that run back at 1/3; the middle is too hot."""
     path = tmp_path / "noh.toml"
