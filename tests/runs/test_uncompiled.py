@@ -69,6 +69,7 @@ def test_it_names_the_line_and_the_cure(tmp_path, formula, says):
         ("None", "Mine.radial gives nothing; let it give a number"),
         ("'a'", "Mine.radial gives a str; let it give a number"),
     ],
+    ids=("a sine", "a root", "a name", "nothing", "a word"),
 )
 def test_what_fails_before_it_is_compiled_is_a_line_too(tmp_path, formula, says):
     text = f'    def radial(self, i, j, pair):\n        """Coefficient."""\n        return {formula}\n'
