@@ -123,6 +123,7 @@ END = {
     "gas/sod": 0.05,
     "gas/sedov": 0.01,
     "gravity/self_gravitating_drop": 400.0,
+    "gravity/collapse": 1.0,
     "machines/rheometer": 5e-3,
     "machines/rheometer_paste": 3e-4,
     "machines/stirred_vessel": 3e-3,
