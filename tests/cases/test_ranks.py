@@ -187,7 +187,7 @@ OF_EACH_KIND = (
     *("floating_box", "cylinder_on_spring", "hull", "paddle_wheel", "absorbing_paddle", "solitary_wave"),
     *("mud/bingham_channel", "mud/grains_on_slope", "soils/blade", "soils/submerged_slide"),
     *("solids/gate", "solids/taylor_bar", "solids/rings", "solids/ball_through_plate", "solids/pulled_strip"),
-    *("hard/patch_3d", "hard/twins", "gas/sod", "gas/sedov"),
+    *("hard/patch_3d", "hard/twins", "gas/sod", "gas/sedov", "gravity/collapse"),
 )
 """Cases that have between them all that others have."""
 
