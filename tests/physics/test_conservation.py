@@ -17,6 +17,7 @@ from physics.test_effects import made
 from remedies import ENTRIES, remedy, using
 from simulation.test_absence import calling_for
 
+from psph.acts import FLUIDS, acts_on
 from psph.composition.terms import displacement, push, radial, shear
 from psph.fields import filled
 from psph.physics.damping.acoustic import ByL, CorrectedDamper, VolumeDamper
@@ -249,12 +250,14 @@ def after_steps(folder, scheme, density, overrides, steps=4):
 def boxes():
     """For each effect that claims momentum a box with it, and whole schemes: name, arguments."""
     for entry in ENTRIES:
-        if MOMENTUM in getattr(entry.effect, "conserves", ()) and entry.effect not in AT_WALLS:
+        effect = entry.effect
+        fits = FLUIDS in acts_on(effect) and effect not in AT_WALLS
+        if fits and MOMENTUM in getattr(effect, "conserves", ()):
             overrides = [
                 o for text in calling_for(entry) for o in (text, text.replace("fluids.water", "fluids.oil"))
             ]
-            overrides += BETWEEN.get(entry.effect.__name__, [])
-            yield entry.effect.__name__, ("sph", 800.0, [*using(entry.effect), *sorted(set(overrides))])
+            overrides += BETWEEN.get(effect.__name__, [])
+            yield effect.__name__, ("sph", 800.0, [*using(effect), *sorted(set(overrides))])
     yield "the stable scheme", ("stable", 800.0, [])
     yield "the stable scheme, a light fluid", ("stable", 200.0, [])
 

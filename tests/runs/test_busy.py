@@ -67,7 +67,8 @@ def test_two_ranks_on_one_core_are_told_to_be_one(tmp_path):
     """A real job, whose ranks may use but one core."""
     (tmp_path / "case.toml").write_text(BOX, encoding="utf-8")
     core = min(os.sched_getaffinity(0))
-    words = ["-m", "psph", "case.toml", "--set", "time.end=1.0", "--set", "output.frames=1.0"]
+    # Long enough where a third process shares the core too: the ranks then take turns more often.
+    words = ["-m", "psph", "case.toml", "--set", "time.end=2.0", "--set", "output.frames=2.0"]
     one_core = {
         "preexec_fn": lambda: os.sched_setaffinity(0, {core}),
         "env": {"OMPI_MCA_mpi_yield_when_idle": "0"},
