@@ -137,9 +137,10 @@ class FloorOfLiquids(NamedTuple):
     linear = TensionFloor.linear
 
 
-LOOSEST = 0.99
-"""Least density of soil that is torn apart, over its rest density: wider gaps are forgotten, or a thin layer
-that has been stretched would slide on walls without any pressure, and so without friction."""
+LOOSEST = 0.9
+"""Least density of soil that is torn apart, over its rest density, as between loose and dense packings: wider
+gaps are forgotten, or grains that fly would thin out and bear nothing where they land.  Of 0.99 a silo swells
+in its stream, and gives less and less."""
 
 
 class FloorBesideStrength(NamedTuple):
