@@ -9,7 +9,8 @@ from psph.fields import Field
 from psph.kinds import Kind, Rank, Stage, Work
 from psph.particles.sizes import GROWTH, Sizes
 from psph.physics.gas.pressure import unit_kernel
-from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, OF_GASES, SOUND, UNEQUAL
+from psph.physics.gas.shocks import switches
+from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, OF_GASES, OF_SWITCH, SHARE, SOUND, UNEQUAL
 from psph.scene.parts.gas import GasPart
 from psph.scene.sites import sites_within
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, find_sizes
@@ -30,7 +31,7 @@ class IdealGases(Kind):
 
     name = "ideal_gases"
     columns = ("thermal_energy",)
-    may_save = (LENGTH, HEAT, SOUND)
+    may_save = (LENGTH, HEAT, SOUND, SHARE)
     is_stiff = False
 
     @property
@@ -41,7 +42,13 @@ class IdealGases(Kind):
     @property
     def fields(self) -> tuple[Field, ...]:
         """What their work fills."""
-        return OF_GASES
+        return OF_GASES if self.least is None else (*OF_GASES, *OF_SWITCH)
+
+    @property
+    def least(self) -> float | None:
+        """The share of the viscosity where nothing shocks; None where it is the same everywhere."""
+        viscosity = self.scene.case.physics.shock_viscosity
+        return viscosity.least if switches(viscosity) else None
 
     @property
     def sizes(self) -> Sizes:
@@ -91,7 +98,7 @@ class IdealGases(Kind):
             gamma[part.number] = part.table.gamma
             if part.table.thermal_energy is None:
                 pressure[part.number] = part.table.pressure
-        yield Gases(rank, gamma, pressure, rank.plan.planned[self.name])
+        yield Gases(rank, gamma, pressure, rank.plan.planned[self.name], self.least)
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What each is, how far particles reach, and what comes before the pass over pairs."""

@@ -35,6 +35,7 @@ from psph.physics.fluid.viscosity import (
 from psph.physics.gas.heat import GasHeat
 from psph.physics.gas.pressure import GasPressure
 from psph.physics.gas.shocks import FastestSignal, HeatConduction, ShockViscosity
+from psph.physics.gas.switch import FlowOfGas
 from psph.physics.order.potential import LocalPotential
 from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
@@ -163,6 +164,7 @@ CATALOGUE = (
     Entry("frame.motion", MovingFrame),
     Entry("ideal_gases.*", GasPressure),
     Entry("physics.shock_viscosity", ShockViscosity),
+    Entry("ideal_gases.*", FlowOfGas),
     Entry("physics.heat_conduction", HeatConduction),
     Entry("ideal_gases.*", GasHeat),
     Entry("ideal_gases.*", FastestSignal),

@@ -10,6 +10,7 @@ from psph.parallel.reductions import exact_sums, largest
 from psph.particles.sizes import GROWTH
 from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
+from psph.simulation.gas_shares import find_shares, shares_of
 from psph.simulation.lengths import NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state
 
 TINY = np.finfo(float).tiny
@@ -50,14 +51,16 @@ class Gases(Work):
     """The particles of the ideal gases of a scene on a ``rank``.
 
     ``gamma`` and ``pressure`` hold γ and the pressure of the start, Pa, of each group; NaN where the case
-    gives its thermal energy.  ``pace`` is that of the plan, the same on every rank.
+    gives its thermal energy.  ``pace`` is that of the plan, the same on every rank.  ``least`` is the share
+    of the viscosity where nothing shocks, None where particles have no shares.
     """
 
     name = "ideal_gases"
 
-    def __init__(self, rank: Rank, gamma: np.ndarray, pressure: np.ndarray, pace: Pace):
+    def __init__(self, rank: Rank, gamma: np.ndarray, pressure: np.ndarray, pace: Pace, least: float | None):
         scene, self._plan, self._store, self._domain, _ = rank
         self._gamma, self._pressure, self._pace = gamma, pressure, pace
+        self._least = least
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
         self._asked = Numbers(target, kernel, kernel.support, GROWTH, tuple(scene.layout.periods))
@@ -119,8 +122,10 @@ class Gases(Work):
         self._each(find_state, *arrays)
 
     def after_sums(self, time: float, dt: float) -> None:
-        """The largest of what limits the next step, over all ranks."""
+        """The largest of what limits the next step, over all ranks, and the shares of viscosity in it."""
         store, inner = self._store, self._store.inner
+        if self._least is not None:
+            self._each(find_shares, self._least, self._asked.support, dt, shares_of(store))
         per_length = 1.0 / store[LENGTH.name][inner]
         push = np.sqrt(sum(a[inner] ** 2 for a in store["acceleration"])) * per_length
         signal = store[SIGNAL.name][inner] * per_length

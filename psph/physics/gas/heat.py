@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 from psph.acts import IDEAL_GASES
 from psph.physics.facts import Facts
 from psph.physics.gas.pressure import both_slopes, unit_kernel
-from psph.physics.gas.shocks import conduction, shock_pressure
+from psph.physics.gas.shocks import conduction, share, shock_pressure, switches
 from psph.physics.gas.state import HEAT
 
 
@@ -29,7 +29,7 @@ class GasHeat(NamedTuple):
     def in_scene(self, scene: Facts):
         """With the viscosity and the conduction of the scene, and the kernel for h = 1 m."""
         viscosity, spread = scene.physics.shock_viscosity, scene.physics.heat_conduction
-        return GasHeat(
+        return (SwitchedHeat if switches(viscosity) else GasHeat)(
             viscosity.alpha if viscosity else 0.0,
             viscosity.beta if viscosity else 0.0,
             spread.strength if spread else 0.0,
@@ -51,3 +51,23 @@ class GasHeat(NamedTuple):
     def finish_value(self, total, i, kernel):
         """u̇_i, W/kg."""
         return total
+
+
+class SwitchedHeat(NamedTuple):
+    """The same where particles have unlike shares of the viscosity."""
+
+    alpha: float
+    beta: float
+    strength: float
+    kernel: Any
+
+    writes = HEAT
+    start, finish_value = GasHeat.start, GasHeat.finish_value
+
+    def gather(self, total, i, j, pair):
+        """Add one neighbour's share of u̇_i, W/kg."""
+        own, other = both_slopes(self.kernel, i, j, pair)
+        work = i.pressure * i.specific_volume * i.specific_volume * own
+        nu = share(i, j) * shock_pressure(self.alpha, self.beta, i, j, pair)
+        spread = conduction(self.strength, own, other, i, j, pair)
+        return total + (work + 0.25 * nu * (own + other)) * pair.u_dot_x + spread

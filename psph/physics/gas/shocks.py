@@ -33,18 +33,31 @@ def shock_pressure(alpha, beta, i, j, pair):
 
 
 @helper
+def share(i, j):
+    """½(σ_i + σ_j), the share of the viscosity that a pair has (psph.physics.gas.switch), 1."""
+    return 0.5 * (i.viscosity_share + j.viscosity_share)
+
+
+@helper
 def mean_slope(kernel, i, j, pair):
     """m_j W̄′/r, the mean of both slopes of a pair with their f, kg/m^(d + 2)."""
     own, other = both_slopes(kernel, i, j, pair)
     return 0.5 * (own + other)
 
 
+def switches(viscosity) -> bool:
+    """Whether particles have unlike shares of the ``viscosity`` of a case; None where it has none."""
+    return viscosity is not None and viscosity.least < 1.0
+
+
 class ShockViscosity(NamedTuple):
     """Friction of gas that runs together: it makes shocks a few smoothing lengths wide.
 
     a_i = −Σ_j m_j ν_ij ∇W̄, ν = (−α c̄ μ + β μ²)/ρ̄, μ = min(0, u_ij·r̂); ∇W̄ the mean of f_ij ∇W(h_i) and
-    f_ji ∇W(h_j).  The heat that it makes is in :class:`psph.physics.gas.heat.GasHeat`.  Monaghan (1997), J.
-    Comput. Phys. 136, 298; Price (2012), J. Comput. Phys. 231, 759.
+    f_ji ∇W(h_j).  With ``least`` below 1 a switch takes it off where nothing shocks
+    (:class:`psph.physics.gas.switch.FlowOfGas`).  The heat that it makes is in
+    :class:`psph.physics.gas.heat.GasHeat`.  Monaghan (1997), J. Comput. Phys. 136, 298; Price (2012), J.
+    Comput. Phys. 231, 759.
     """
 
     acts = (IDEAL_GASES,)
@@ -56,10 +69,20 @@ class ShockViscosity(NamedTuple):
     beta: Annotated[
         float, Field(ge=0, description="coefficient β of the approach", json_schema_extra={"unit": "1"})
     ] = 2.0
+    least: Annotated[
+        float,
+        Field(
+            ge=0,
+            le=1,
+            description="share of both that is left where nothing shocks: 1 constant, 0 a switch",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 1.0
 
     def in_scene(self, scene: Facts):
         """With the kernel for h = 1 m."""
-        return KernelViscosity(self.alpha, self.beta, unit_kernel(scene.kernel, scene.dimensions))
+        form = SwitchedViscosity if switches(self) else KernelViscosity
+        return form(self.alpha, self.beta, unit_kernel(scene.kernel, scene.dimensions))
 
 
 class KernelViscosity(NamedTuple):
@@ -74,6 +97,21 @@ class KernelViscosity(NamedTuple):
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
         nu = shock_pressure(self.alpha, self.beta, i, j, pair)
+        return scale(pair.x_ij, -nu * mean_slope(self.kernel, i, j, pair))
+
+
+class SwitchedViscosity(NamedTuple):
+    """The same where particles have unlike shares of it."""
+
+    conserves = ShockViscosity.conserves
+
+    alpha: float
+    beta: float
+    kernel: Any
+
+    def push(self, i, j, pair):
+        """Acceleration, m/s²."""
+        nu = share(i, j) * shock_pressure(self.alpha, self.beta, i, j, pair)
         return scale(pair.x_ij, -nu * mean_slope(self.kernel, i, j, pair))
 
 

@@ -25,6 +25,22 @@ HEAT = Field("thermal_energy", "J/kg", "thermal energy by mass", saved=True, evo
 
 SIGNAL = Field("signal_speed", "m/s", "fastest signal between a particle of a gas and its neighbours")
 
+COMPRESSION = Field("velocity_divergence", "1/s", "divergence of the velocity of a gas, of the last pass")
+
+ROTATION = Field("vorticity_size", "1/s", "size of the vorticity of a gas, of the last pass")
+
+EARLIER = Field("earlier_divergence", "1/s", "divergence of the velocity of a gas one step before")
+
+SHOCKED = Field("shocked", "1", "how near a shock a particle of a gas is or has been", start=1.0)
+"""s, 1 in a shock: what is left of it falls as sound crosses the support."""
+
+SHARE = Field(
+    "viscosity_share", "1", "share of the viscosity of shocks that a particle has", start=1.0, image=Same
+)
+
+OF_SWITCH = (EARLIER, SHOCKED, SHARE)
+"""What their work fills where viscosity is not the same everywhere."""
+
 OF_GASES = (LENGTH, LISTED_LENGTH, UNEQUAL, SOUND)
 """What their work fills."""
 
