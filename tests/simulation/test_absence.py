@@ -9,6 +9,7 @@ from drafts import SQUARE, draft
 from long import long_but_for
 from mpi4py import MPI
 
+from psph.acts import IDEAL_GASES
 from psph.engine.jit import FAST
 from psph.output.ledger import Ledger
 from psph.physics.catalogue import BUILT_IN, CATALOGUE, Entry
@@ -161,8 +162,10 @@ def name_of(entry):
 SHORT = ("FreeSurface", "ArtificialViscosity", "PairDamping")
 WET = [one for one in CATALOGUE if not one.key.startswith("anvils.") and one.effect is not SolidContact]
 """Anvils and contact are there for scenes of solids alone: tests/simulation/test_contact.py."""
-ALONE = [entry for entry in WET if entry.effect.__name__ != "SmoothFace"]
-"""Without that one, whose normal the rate of a stress reads, and which reads that stress: neither can be alone."""
+OF_GASES = [one for one in CATALOGUE if getattr(one.effect, "acts", ()) == (IDEAL_GASES,)]
+ALONE = [one for one in WET if one not in OF_GASES and one.effect.__name__ != "SmoothFace"]
+"""Without those of ideal gases, which are no fluid, and the one whose normal the rate of a stress reads, and which
+reads that stress: neither can be alone."""
 
 KEYED, ALL = (long_but_for(SHORT, entries, name_of) for entries in ([e for e in CATALOGUE if e.key], ALONE))
 

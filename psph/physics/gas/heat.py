@@ -54,7 +54,7 @@ class GasHeat(NamedTuple):
 
 
 class SwitchedHeat(NamedTuple):
-    """The same where particles have unlike shares of the viscosity."""
+    """The heat of an ideal gas, with little friction where nothing shocks: of a pair by both its shares."""
 
     alpha: float
     beta: float

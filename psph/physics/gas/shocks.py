@@ -101,7 +101,7 @@ class KernelViscosity(NamedTuple):
 
 
 class SwitchedViscosity(NamedTuple):
-    """The same where particles have unlike shares of it."""
+    """Friction of gas that runs together, little of it where nothing shocks: of a pair by both its shares."""
 
     conserves = ShockViscosity.conserves
 
