@@ -214,7 +214,7 @@ class Kind:
 
     @classmethod
     def motion_of(cls, layout: Any, part: Any) -> Any:
-        """How a part moves that forces move as a whole, by its sites (psph.physics.motion); None: not its."""
+        """How a part of this kind moves as a whole under forces (psph.physics.motion); None: of another."""
         return None
 
     @classmethod

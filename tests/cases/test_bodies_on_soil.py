@@ -94,8 +94,8 @@ def test_a_driven_wheel_rolls_and_a_heavy_one_digs_itself_in(tmp_path):
         sunk[mass] = 0.39 - wheel["wheel.centre_y"][-1]
         lifted[mass] = run.gauges()["push"]["push.force_y"][late].mean() / (mass * G)
     tell(f"wheels of 40 and 100 kg/m on sand: slip {slip}, sunk {sunk} m")
-    assert 0.0 < slip[40.0] < 0.3 and 0.4 < slip[100.0] < 0.8  # no theory: 0.14, 0.49
-    assert abs(sunk[40.0]) < 0.005 < 0.01 < sunk[100.0]
+    assert 0.1 < slip[40.0] < 0.2 and 0.4 < slip[100.0] < 0.6  # no theory: 0.14, 0.49
+    assert abs(sunk[40.0]) < 0.005 and 0.009 < sunk[100.0] < 0.014
     assert list(lifted.values()) == pytest.approx([1.0, 1.0], abs=0.02)
 
 
