@@ -19,9 +19,9 @@ class NumberOf(Table):
     after: float = key("rows count from this time on", 0.0, unit="s", ge=0)
     until: float | None = key("rows count up to this time", None, unit="s", otherwise="the end", gt=0)
     level: float | None = key(
-        "of arrival and crossings the level, in the unit of the column",
+        "of arrival, crossings and crests the level, in the unit of the column",
         None,
-        otherwise="half of the way; the mean",
+        otherwise="half of the way of an arrival, else the mean",
     )
     wave: Text | None = key("of response the column with the level of the wave", None)
     period: float | None = key(

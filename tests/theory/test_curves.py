@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from psph.theory.curves import moments, oscillation, overtopping
+from psph.theory.curves import crests, moments, oscillation, overtopping
 from psph.theory.curves.catalogue import TAKEN
 from psph.theory.curves.number import Curve, NoNumber
 from psph.theory.curves.spectrum import highest_third, peak_period, significant_height, spectrum
@@ -126,6 +126,24 @@ def test_height_and_period_of_a_sea_that_is_known():
         peak_period(Curve(TIME, np.ones(len(TIME))))
     with pytest.raises(NoNumber, match="too few"):
         significant_height(Curve(TIME[:3], TIME[:3]))
+
+
+def test_crests_of_waves_one_by_one():
+    """Of heights after Rayleigh 2 % exceed ½√(½ ln 50) H_s; a regular wave's are all alike.  Waves lower than a
+    twentieth of the swing do not count."""
+    time = np.arange(0.0, 2000.0, 0.05)
+    heights = np.random.default_rng(6).rayleigh(0.25 * 0.12, 2000)
+    swash = Curve(time, np.repeat(heights, 20)[: len(time)] * np.sin(2.0 * math.pi * time))
+    rare = crests.rare_crest(swash, 0.0).value
+    assert rare == pytest.approx(0.5 * math.sqrt(0.5 * math.log(50.0)) * 0.12, rel=0.05)
+    counted = heights[heights > 0.05 * swash.swing]
+    assert crests.mean_crest(swash, 0.0).value == pytest.approx(counted.mean(), rel=1e-3)
+    regular = Curve(TIME, 0.3 + 0.1 * np.sin(2.0 * math.pi * TIME / 1.3))
+    assert crests.mean_crest(regular).value == pytest.approx(0.4, abs=1e-4)
+    with pytest.raises(NoNumber, match="6 waves are too few"):
+        crests.rare_crest(regular)
+    with pytest.raises(NoNumber, match="no wave from one rise"):
+        crests.mean_crest(Curve(TIME, TIME))
 
 
 @pytest.mark.parametrize("waves", (3.5, 5.0, 8.0, 20.0))

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from psph.theory.curves import moments, oscillation, overtopping
+from psph.theory.curves import crests, moments, oscillation, overtopping
 from psph.theory.curves import spectrum as spectra
 from psph.theory.curves.number import Curve, CurveNumber
 
@@ -44,6 +44,10 @@ TAKEN = {
     "significant_height": Taking(spectra.significant_height, "4 standard deviations of a level"),
     "peak_period": Taking(spectra.peak_period, "the period at the peak of the spectrum", "s"),
     "highest_third": Taking(spectra.highest_third, "the mean height of the highest third of the waves"),
+    "mean_crest": Taking(crests.mean_crest, "the mean of the highest value of each wave", reads=("level",)),
+    "rare_crest": Taking(
+        crests.rare_crest, "what 2 % of the highest values of each wave exceed", reads=("level",)
+    ),
     "discharge": Taking(overtopping.discharge, "what goes over a crest", "L/(m s)"),
     "largest_wave": Taking(
         overtopping.largest_wave, "the largest volume of a wave over a crest", "L/m", ("rest",), ("rest",)
