@@ -47,7 +47,7 @@ def marks_of(layout: Layout, hung: Mapping[str, np.ndarray] = MappingProxyType({
     sketched = (
         mark._replace(lines=[hung[mark.key]]) if mark.key in hung else mark for mark in _sketched(layout)
     )
-    return [*_domain(layout), *_ends(layout), *_zones(layout), *sketched]
+    return [*_domain(layout), *_ends(layout), *_zones(layout), *sketched, *_counted(layout)]
 
 
 def _mark(key: str, says: str, lines) -> Mark:
@@ -90,11 +90,8 @@ def _ends(layout: Layout) -> Iterator[Mark]:
             continue
         seen.add(part.key)
         end, box = part.table.end, form_of(part.shape).bounds
-        face = _across(end.axis, end.at, box)
-        middle = np.mean([np.array(face).min(axis=0), np.array(face).max(axis=0)], axis=0)
-        way = np.zeros(len(middle))
-        way[end.axis] = end.sign * (box[1][end.axis] - box[0][end.axis])
-        yield _mark(part.key, f"({end.given}, {end.inward})", [face, (middle, middle + way)])
+        deep = end.sign * (box[1][end.axis] - box[0][end.axis])
+        yield _mark(part.key, f"({end.given}, {end.inward})", _passed(end.axis, end.at, box, deep))
 
 
 def _zones(layout: Layout) -> Iterator[Mark]:
@@ -105,6 +102,29 @@ def _zones(layout: Layout) -> Iterator[Mark]:
             axis = AXES.index(zone.axis)
             planes = [_across(axis, at, ends) for at in (zone.begin, zone.end)]
             yield _mark(f"physics.{name}", "", [*planes, *zip(*(plane[:-1] for plane in planes))])
+
+
+def _counted(layout: Layout) -> Iterator[Mark]:
+    """Where gauges count fluid: the box around a shape, all of the domain, or what is beyond a crest."""
+    for name, gauge in layout.case.gauges.items():
+        asked, domain = getattr(gauge, gauge.kind), (layout.lower, layout.upper)
+        if not hasattr(asked, "shape"):
+            continue
+        box = domain if asked.shape is None else np.clip(form_of(asked.shape).bounds, *domain)
+        lines, says = edges(*map(tuple, box)), "" if asked.shape is None else "(the box around it)"
+        if hasattr(asked, "towards"):
+            axis = AXES.index(asked.towards[1])
+            beyond = box[1][axis] - asked.at if asked.towards[0] == "+" else box[0][axis] - asked.at
+            crest = _passed(axis, asked.at, box, beyond)
+            lines, says = crest if asked.shape is None else [*crest, *lines], f"({asked.towards})"
+        yield _mark(f"gauges.{name}.{gauge.kind}", says, lines)
+
+
+def _passed(axis: int, at: float, box, far: float) -> list:
+    """The plane across an axis in a box, and a line from its middle so far, m, along the axis."""
+    face = _across(axis, at, box)
+    middle = np.mean([np.array(face).min(axis=0), np.array(face).max(axis=0)], axis=0)
+    return [face, (middle, middle + far * (np.arange(len(middle)) == axis))]
 
 
 def _across(axis: int, at: float, ends) -> tuple:

@@ -82,6 +82,36 @@ def test_all_that_acts_is_marked_where_it_is(tmp_path):
     assert len(marks["space"].lines) == 12
 
 
+REGIONS = """
+[gauges.over.overtopping]
+at = 1.5
+towards = "-x"
+width = 1.0
+[gauges.basin.volume]
+shape.ball = { center = [0.5, 0.5, 0.0], radius = 0.25 }
+[gauges.basin_top.highest]
+axis = "z"
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.0, 1.0, 9.0] }
+[gauges.top.highest]
+axis = "z"
+"""
+
+
+def test_regions_of_gauges_are_marked(tmp_path):
+    marks = {mark.key: mark for mark in marks_of(lay_out(case_of(tmp_path, CASE + REGIONS)))}
+
+    def corners(key):
+        places = np.concatenate(marks[f"gauges.{key}"].lines)
+        return [*places.min(axis=0), *places.max(axis=0)]
+
+    assert corners("basin.volume") == pytest.approx([0.25, 0.25, -0.25, 0.75, 0.75, 0.25])
+    assert corners("basin_top.highest") == [0.0, 0.0, 0.0, 1.0, 1.0, 2.5]  # not beyond the domain
+    assert corners("top.highest") == [-0.5, -0.5, -0.5, 2.5, 1.5, 2.5]
+    crest, way = marks["gauges.over.overtopping"].lines
+    assert set(crest[:, 0]) == {1.5} and way.tolist() == [[1.5, 0.5, 1.0], [-0.5, 0.5, 1.0]]
+    assert marks["gauges.over.overtopping"].says == "(-x)"
+
+
 def test_a_chain_is_drawn_as_it_hangs():
     scene = Scene(load(ROOT / "run/cases/moored_pontoon.toml"))
     marks = {mark.key: mark for mark in marks_of(scene.layout, strung_at_start(scene))}
