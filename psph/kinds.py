@@ -53,10 +53,9 @@ class Rank(NamedTuple):
 
 
 class Created(NamedTuple):
-    """Particles as they begin, all of a kind, the same on every rank.
-
-    ``group`` (n,) is the number of that of each among those of the kind, ``position`` (n, dim) in m,
-    ``velocity`` (n, dim) in m/s, ``density`` (n,) in kg/m^d; ``values`` has fields by name, (n, ...).
+    """Particles as they begin, all of a kind, the same on every rank: ``group`` (n,) is the number of that of
+    each among those of the kind, with ``of_parts`` among the parts of the scene; ``position`` (n, dim) m,
+    ``velocity`` (n, dim) m/s, ``density`` (n,) kg/m^d; ``values`` has fields by name, (n, ...).
     """
 
     group: np.ndarray
@@ -64,6 +63,7 @@ class Created(NamedTuple):
     velocity: np.ndarray
     density: np.ndarray
     values: Mapping[str, np.ndarray]
+    of_parts: bool = False
 
 
 class Work:

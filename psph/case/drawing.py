@@ -16,6 +16,8 @@ class Drawing(Table):
     kind: ClassVar[str] = ""
     """What the file is, in words."""
     endings: ClassVar[tuple[str, ...]] = ()
+    faulty: ClassVar[tuple[str, ...]] = ("file",)
+    """Where in its table a message puts what is wrong with the file."""
 
     file: Text = key("a file in the case's folder or below")
 
@@ -39,6 +41,6 @@ class Drawing(Table):
             self.read()
         except Unfit as says:
             wrong = PydanticCustomError("psph", "{says}", {"says": str(says)})
-            fault = {"type": wrong, "loc": ("file",), "input": ...}
+            fault = {"type": wrong, "loc": self.faulty, "input": ...}
             raise ValidationError.from_exception_data(type(self).__name__.lower(), [fault]) from None
         return self

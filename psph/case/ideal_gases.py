@@ -2,13 +2,18 @@
 
 import math
 from collections.abc import Iterator
-from typing import ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import BeforeValidator, PlainSerializer
 
 from psph.acts import BODIES, FLUIDS, FRAME, IDEAL_GASES, MIXED, SOILS, SOLIDS, SYMMETRY, UPDATED, speaks_for
 from psph.case.findings import Finding
+from psph.case.forms import Box
 from psph.case.keys import key
 from psph.case.matter import FreeMatter
 from psph.case.schemes import GAS
+from psph.case.shapes import Shape
+from psph.case.snapshots import Snapshot
 from psph.physics.walls.conditions import CONDITIONS
 
 FINEST = 16
@@ -24,13 +29,36 @@ REPELLING = ("wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic", "g
 """Kernels that fall smoothly from r = 0, so that a smoothing length is found by Newton's method."""
 
 
+OF_SITES = ("shape", "density", "spacing", "jitter")
+"""Keys of a gas that starts on sites, and not from a file."""
+
+
+def _named(value: Any) -> Any:
+    """A file by its name alone."""
+    return {"file": value} if isinstance(value, str) else value
+
+
+OfFile = Annotated[
+    Snapshot, BeforeValidator(_named), PlainSerializer(lambda snapshot: snapshot.file, return_type=str)
+]
+"""The particles of a file that a case names."""
+
+
 @speaks_for(IDEAL_GASES)
 class IdealGas(FreeMatter):
     """An ideal gas, compressible: p = (γ − 1) ρ u; shocks heat it.  Not a weakly compressible fluid."""
 
-    density: float = key("density at the start", unit="kg/m3", gt=0)
+    shape: Shape | None = key("where it is at the start", None, otherwise="where the particles of file are")
+    file: OfFile | None = key(
+        "in place of a shape the particles of a file, by places, velocities, masses and heat: HDF5 like "
+        "Gadget's, CSV or .npz, in the case's folder or below",
+        None,
+    )
+    density: float | None = key(
+        "density at the start", None, unit="kg/m3", otherwise="that of the particles of file", gt=0
+    )
     pressure: float | None = key(
-        "pressure at the start", None, unit="Pa", otherwise="that of thermal_energy", gt=0
+        "pressure at the start", None, unit="Pa", otherwise="that of thermal_energy, or of file", gt=0
     )
     thermal_energy: float | None = key(
         "thermal energy by mass at the start, in place of the pressure", None, unit="J/kg", gt=0
@@ -72,9 +100,8 @@ class IdealGas(FreeMatter):
         space = case.space
         for name, gas in case.ideal_gases.items():
             here = ("ideal_gases", name)
-            if (gas.pressure is None) == (gas.thermal_energy is None):
-                says = "give pressure or thermal_energy, and not both"
-                yield (*here, "pressure"), gas.pressure, says
+            for where, value, says in gas._of_file(space) if gas.file else gas._of_shape():
+                yield (*here, *where), value, says
             if isinstance(gas.velocity, str):
                 yield (*here, "velocity"), gas.velocity, "no exact solution has gases; give numbers"
             finer = gas.finer(space.spacing)
@@ -84,6 +111,29 @@ class IdealGas(FreeMatter):
                 fits = f"give {space.spacing / 2:g} or such"
                 says = f"is no whole part of space.spacing down to 1/{FINEST}; {fits}"
                 yield (*here, "spacing"), gas.spacing, says
+
+    def _of_shape(self) -> Iterator[Finding]:
+        """What is missing or too much of a gas that starts on sites."""
+        if self.shape is None:
+            yield (), ..., "has no shape; give one, or the file of its particles"
+        if self.density is None:
+            yield ("density",), None, "is missing; give one in kg/m3"
+        if (self.pressure is None) == (self.thermal_energy is None):
+            yield ("pressure",), self.pressure, "give pressure or thermal_energy, and not both"
+
+    def _of_file(self, space) -> Iterator[Finding]:
+        """The same of one from a file."""
+        for name in OF_SITES:
+            if getattr(self, name):
+                yield (name,), ..., "the file says where its particles are and how many; remove this key"
+        if wrong := self.file.misfit(space.dimensions):
+            yield ("file",), self.file.file, wrong
+        told = [self.pressure, self.thermal_energy, self.file.begun(space.dimensions).thermal_energy]
+        if all(one is None for one in told):
+            says = "has no thermal energy; add it to the file, or give pressure or thermal_energy"
+            yield ("file",), self.file.file, says
+        if None not in told[:2]:
+            yield ("pressure",), self.pressure, "give pressure or thermal_energy, and not both"
 
     def finer(self, spacing: float) -> int:
         """The ``spacing`` of the scene, m, over its own: a whole number from 1 on."""
@@ -101,9 +151,22 @@ class IdealGas(FreeMatter):
         """Of the start, √(γ (γ − 1) u), m/s."""
         return math.sqrt(self.gamma * (self.gamma - 1.0) * self.heat)
 
-    def settled(self) -> Self:
-        """The same, with the pressure that follows from the thermal energy."""
-        return self.model_copy(update={"pressure": (self.gamma - 1.0) * self.density * self.heat})
+    def settled(self, space) -> Self:
+        """The same in the ``space`` of its case, with the pressure that follows from the thermal energy.
+
+        Of a file: in a box around its particles, with their mean density and heat.
+        """
+        told: dict[str, Any] = {}
+        if self.file:
+            begun = self.file.begun(space.dimensions)
+            lower, upper = begun.ends(space.spacing)
+            mass, heat = float(begun.mass.sum()), begun.thermal_energy
+            told["shape"] = Shape(box=Box(lower=lower, upper=upper))
+            told["density"] = mass / math.prod(up - low for low, up in zip(lower, upper))
+            if self.pressure is None and self.thermal_energy is None:
+                told["thermal_energy"] = float(begun.mass @ heat) / mass
+        known = self.model_copy(update=told)
+        return known.model_copy(update={"pressure": (self.gamma - 1.0) * known.density * known.heat})
 
 
 def _beside(case) -> Iterator[Finding]:

@@ -5,12 +5,13 @@ from collections.abc import Container, Iterator, Mapping
 
 import numpy as np
 
-from psph.fields import Field
-from psph.kinds import Kind, Rank, Stage, Work
+from psph.fields import VELOCITY, Field
+from psph.kinds import Created, Kind, Rank, Stage, Work, count_of
 from psph.particles.sizes import GROWTH, Sizes
 from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.shocks import switches
 from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, OF_GASES, OF_SWITCH, SHARE, SOUND, UNEQUAL
+from psph.scene.particles import settled_at
 from psph.scene.parts.gas import GasPart
 from psph.scene.sites import sites_within
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, find_sizes
@@ -69,6 +70,38 @@ class IdealGases(Kind):
         yield HEAT.name, heat
         yield PREDICTED, heat
 
+    def particles(self) -> Created | None:
+        """Those on no sites."""
+        layout, starts = self.scene.layout, self.scene.starts
+        apart = [part for part in self.parts if part.number in layout.placed]
+        if not apart:
+            return None
+        counts = [len(layout.placed[part.number]) for part in apart]
+        number = np.repeat([part.number for part in apart], counts)
+        position = np.concatenate([layout.placed[part.number] for part in apart])
+        found = settled_at(starts, np.arange(len(number)), number, position)
+        values = {"mass": found.mass, **{name: x[:, 0] for name, x in self.starts((), number, position)}}
+        for part, last in zip(apart, np.cumsum(counts)):
+            rows = slice(last - len(layout.placed[part.number]), last)
+            for name, own in layout.begun[part.number].items():
+                if name == VELOCITY.name:
+                    found.velocity[rows] += own
+                else:
+                    values[name][rows] = own
+        return Created(number, position, found.velocity, found.density, values, of_parts=True)
+
+    def faults(self) -> Iterator[str]:
+        """Particles of files outside the domain, and too few in all."""
+        layout = self.scene.layout
+        for part in self.parts:
+            yield from part.outside(layout)
+        count, least = count_of(self.scene), math.ceil(sites_within(self.scene, self.scene.support))
+        if count <= least:
+            yield (
+                f"{self.parts[0].key}: {count} particles in all, and space.smoothing asks for {least} "
+                "neighbours of each; put more particles, or give a smaller space.smoothing"
+            )
+
     def renews(self, passes) -> tuple[str, ...]:
         """Lengths and what follows from them, and the heat, of which too low a prediction is lifted."""
         return LENGTH.name, UNEQUAL.name, SOUND.name, PREDICTED, "pressure", "specific_volume"
@@ -79,7 +112,7 @@ class IdealGases(Kind):
 
     def planned(self, plan) -> Pace:
         """What limits the step: at the start by sound at rest."""
-        return Pace(max(2.0 * part.wave_speed * part.finer for part in self.parts) / plan.smoothing_length)
+        return Pace(max(2.0 * part.quickest(self.scene.layout) for part in self.parts))
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """That of the fastest signal across a smoothing length, of the largest push, and of what cools."""

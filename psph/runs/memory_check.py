@@ -29,7 +29,7 @@ def check_size(scene, comm) -> None:
     Before the sites are counted, which takes hours where they are too many by far.
     """
     sites = (
-        sum(_least_volume(part.shape) for part in scene.layout.parts if part.moves_freely)
+        sum(_least_volume(part.shape) for part in scene.layout.parts if part.moves_freely and part.drawn)
         / scene.spacing**scene.dimensions
     )
     free = sum(comm.allgather(free_memory() / ranks_here(comm)))

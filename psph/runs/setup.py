@@ -33,7 +33,7 @@ def create_particles(scene, plan: Plan, comm) -> Store:
     first, groups = int(scene.census.counts.sum()), len(scene.species)
     for kind in plan.matter:
         if made := kind.particles():
-            _append(scene, plan, store, made, groups, first, comm)
+            _append(scene, plan, store, made, 0 if made.of_parts else groups, first, comm)
             first += len(made.group)
         groups += len(kind.groups())
     return store
@@ -52,7 +52,7 @@ def _append(scene, plan: Plan, store: Store, made: Created, first_group: int, fi
         made.velocity[begin:end],
         made.density[begin:end],
     )
-    for name, values in made.values.items():
+    for name, values in ((name, values) for name, values in made.values.items() if name in store):
         block[list(store.rows[name])] = values[begin:end].reshape(end - begin, -1).T
     store.append(first_id + np.arange(begin, end), group, block)
 

@@ -14,7 +14,7 @@ from psph.scene.meshes.drawn import sites_in
 
 @dataclass(frozen=True, eq=False)
 class Census:
-    """What the sites of a layout tell.
+    """What the sites of a layout tell, and the places of particles that are on none.
 
     ``counts`` (planes,) particles; ``sizes`` (parts,) sites inside each shape; ``lowest``, ``highest``
     (parts, dim) their extreme coordinates, m; ``bottom``, ``top`` (parts,) the same along the upward
@@ -86,6 +86,11 @@ def take_census(layout: Layout) -> Census:
             if mask.any():
                 _measure(census, material, mask, lattice, grid, height)
                 _find_clashes(census, material, masks, grid)
+    for number, places in layout.placed.items():
+        heights = places @ np.array(layout.up)
+        census.sizes[number] = len(places)
+        census.lowest[number], census.highest[number] = places.min(axis=0), places.max(axis=0)
+        census.bottom[number], census.top[number] = heights.min(), heights.max()
     return census
 
 

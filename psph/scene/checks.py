@@ -192,7 +192,7 @@ def _or_displace(one: Part, other: Part) -> str:
 
 def _particles_outside(scene: Scene) -> Iterator[str]:
     census, slack = scene.census, TOLERANCE * scene.spacing
-    for material in np.flatnonzero(census.sizes):
+    for material in set(np.flatnonzero(census.sizes)) - scene.layout.placed.keys():
         for d, name in enumerate(AXES[: scene.dimensions]):
             lowest, highest = census.lowest[material, d], census.highest[material, d]
             low, up = scene.layout.lower[d] - slack, scene.layout.upper[d] - slack

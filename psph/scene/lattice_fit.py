@@ -43,7 +43,7 @@ def widths(scene: Scene) -> list[Width]:
         if period is not None
     ]
     for part in scene.layout.parts:
-        if part.moves_freely or part.moves_whole:
+        if part.drawn and (part.moves_freely or part.moves_whole):
             found += (Width(part.key, *side) for box in _boxes(form_of(part.shape)) for side in _sides(box))
     for name, wall in case.walls.items():
         found += (Width(f"walls.{name}", *side) for side in _cavities(form_of(wall.shape)))

@@ -199,8 +199,22 @@ class Layout:
     def cell_counts(self) -> np.ndarray:
         """How many particles a site gets that is held by each part (256,); none where it is held by none."""
         counts = np.zeros(NONE + 1, np.int64)
-        counts[: len(self.parts)] = [part.finer**self.dimensions for part in self.parts]
+        on_sites = (part.number not in self.placed for part in self.parts)
+        counts[: len(self.parts)] = [
+            sited * part.finer**self.dimensions for part, sited in zip(self.parts, on_sites)
+        ]
         return counts
+
+    @cached_property
+    def placed(self) -> dict[int, np.ndarray]:
+        """Where the particles of parts are that are on no sites (n, dim), m, by the numbers of the parts."""
+        found = {part.number: part.places(self) for part in self.parts}
+        return {number: places for number, places in found.items() if places is not None}
+
+    @cached_property
+    def begun(self) -> dict[int, dict[str, np.ndarray]]:
+        """What else is told of these particles, fields by name (n, ...), by the numbers of the parts."""
+        return {number: self.parts[number].begins(self) for number in self.placed}
 
     def materials(self, first: int, last: int) -> np.ndarray:
         """Number of the part at each site of some planes, uint8; the first that claims a site has it."""

@@ -15,7 +15,8 @@ class Species(NamedTuple):
 
     ``motion`` is how they move (psph.physics.motion); ``density`` at zero pressure in kg/m³;
     kinematic ``viscosity`` in m²/s; ``mass`` of a particle in kg (per m of depth in 2D, per m² in
-    1D); ``law`` is the equation of state (psph.physics.fluid.state).  A wall takes these from the fluid
+    1D), the mean where they have not ``one_mass``; ``law`` is the equation of state
+    (psph.physics.fluid.state).  A wall takes these from the fluid
     it continues; ``no_slip`` if that fluid sticks to it; ``condition`` is what it sets to the fluid before it
     (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for;
     ``rheology`` is the number of the law of its viscosity among those of the scene from 1 on, 0 where that is
@@ -60,6 +61,7 @@ class Species(NamedTuple):
     fluid: int = 0
     tensions: tuple[float, ...] = ()
     wetting: float = 0.0
+    one_mass: bool = True
 
     @property
     def inertia(self) -> float:

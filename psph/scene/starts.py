@@ -87,7 +87,8 @@ class Starts:
             Species(
                 name=part.name,
                 motion=motion,
-                mass=start.mass(volume) / part.finer**layout.dimensions,
+                mass=part.particle_mass(start.mass(volume), layout.dimensions),
+                one_mass=part.one_mass,
                 cell_count=part.finer**layout.dimensions,
                 law=start.law,
                 loaded=part.loaded,

@@ -17,9 +17,6 @@ def block_of(scene, materials: Materials, store: Store, species, position, veloc
     for name, values in (starting | {ANCHOR.name: position, REFERENCE.name: position}).items():
         if name in store:
             block[list(store.rows[name])] = values.T
-    for kind in kinds_in(scene):
-        for name, values in kind.starts(store.fields, species, position):
-            block[list(store.rows[name])] = values.T
     known = {"density": density}
     known |= {field.name: materials.values(field.name)[species] for field in OF_MATERIAL}
     known[APART.name] = materials.apart[species]
@@ -30,4 +27,7 @@ def block_of(scene, materials: Materials, store: Store, species, position, veloc
     for name, values in known.items():
         if name in store:
             block[store.rows[name].start] = values
+    for kind in kinds_in(scene):
+        for name, values in kind.starts(store.fields, species, position):
+            block[list(store.rows[name])] = values.T
     return block

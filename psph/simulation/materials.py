@@ -129,7 +129,7 @@ def split(species, names) -> tuple[dict[str, float], tuple[str, ...]]:
         values = {material_value(m, name) for m in species}
         if name != "mass" and name not in names:
             continue
-        if len(values) == 1:
+        if len(values) == 1 and (name != "mass" or all(m.one_mass for m in species)):
             shared[name] = values.pop()
         else:
             varying.append(name)

@@ -77,14 +77,15 @@ def refuse_without_image(scene, called: Iterable[Called], fields: Mapping[str, F
 
 
 def kept_in_frames(scene, stored: Iterable[str]) -> tuple[str, ...]:
-    """The further fields that the case wants in frames (output.fields).  CaseError where the particles of the
-    scene, which carry those ``stored``, carry no such thing."""
+    """The further fields of frames: those that the case wants (output.fields), and masses that differ within
+    a group.  CaseError where the particles of the scene, which carry those ``stored``, carry none."""
     asked, stored = scene.case.output.fields, tuple(stored)
     for name in asked:
         if name not in stored:
             says = f"particles of this scene carry no {name}; they carry {', '.join(sorted(stored))}"
             raise CaseError([one_line(f"{scene.case.file}: output.fields: {says}")])
-    return tuple(asked)
+    uneven = () if all(one.one_mass for one in scene.species) else ("mass",)
+    return tuple(dict.fromkeys((*asked, *uneven)))
 
 
 def _line(scene, effect, says: str) -> str:

@@ -23,6 +23,7 @@ _NAMES = {
     "position": "Coordinates",
     "velocity": "Velocities",
     "id": "ParticleIDs",
+    "mass": "Masses",
     "thermal_energy": "InternalEnergy",
 }
 """Names that Gadget has of its own; others are made of psph's, ``strain_rate`` as ``StrainRate``."""
@@ -56,6 +57,7 @@ def _fill(file: h5py.File, exported: Exported, k: int) -> None:
     dimensions = frame["position"].shape[1]
     part = exported.parts(frame["group"])
     lengths, scene = frame.pop(SIZE, None), exported.scene
+    frame.setdefault("mass", exported.masses[frame["group"]])
     support = np.full(len(part), exported.support)
     if lengths is not None:
         support = exported.support / scene.smoothing_length * lengths
@@ -67,7 +69,6 @@ def _fill(file: h5py.File, exported: Exported, k: int) -> None:
         group = file.create_group(f"PartType{number}")
         for name, rows in frame.items():
             _add(group, _called(name), in_space(rows, dimensions)[of_kind], exported.units[name])
-        _add(group, "Masses", exported.masses[frame["group"][of_kind]], "kg")
         _add(group, "SmoothingLength", support[of_kind], "m")
 
 

@@ -26,7 +26,7 @@ class Exported:
         if not len(self.times):
             raise NotThere(f"{self.run.path}: no frame yet; wait for the first one")
         self.chosen = range(len(self.times)) if times is None else self.run.nearest(times)
-        self.units = {name: self.run.unit(name) for name in self.run.fields}
+        self.units = {"mass": "kg"} | {name: self.run.unit(name) for name in self.run.fields}
 
     @cached_property
     def scene(self) -> Scene:
@@ -46,7 +46,8 @@ class Exported:
 
     @cached_property
     def masses(self) -> np.ndarray:
-        """Mass of a particle of each group, kg; per m of depth in 2D, per m² in 1D."""
+        """Mass of a particle of each group where frames do not tell it, kg; per m of depth in 2D, per m² in
+        1D."""
         return np.array([species.mass for species in self.scene.species])
 
     @cached_property

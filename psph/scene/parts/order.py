@@ -17,7 +17,7 @@ from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp, R
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.parts.end import Behind, EndPart, behind
 from psph.scene.parts.fluid import FluidPart
-from psph.scene.parts.gas import GasPart
+from psph.scene.parts.gas import gas_part
 from psph.scene.parts.part import Part
 from psph.scene.parts.rigid import BodyPart, WallPart
 from psph.scene.parts.soil import SoilPart
@@ -108,8 +108,8 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     for name, solid in updated_in(case).items():
         add(UpdatedPart, name, f"solids.{name}", solid, Free(), solid=0)
     for name, gas in case.ideal_gases.items():
-        finer = gas.finer(case.space.spacing)
-        add(GasPart, name, f"ideal_gases.{name}", gas.settled(), Gaseous(), solid=0, finer=finer)
+        kind, table, own = gas_part(gas, case.space)
+        add(kind, name, f"ideal_gases.{name}", table, Gaseous(), solid=0, **own)
     for number, ((name, solid), made) in enumerate(zip(referred_in(case).items(), solids_in(case))):
         more: dict[str, Any] = {"source": continued(solid)} if flowing else {}
         more |= {"solid": FIRST_BODY + number, "bonded": number, "made": made, "loaded": bool(flowing)}

@@ -77,6 +77,8 @@ class Part:
     """Whether it may begin without a particle."""
     drawn: ClassVar[bool] = True
     """Whether the case draws its shape, from which another can be subtracted."""
+    one_mass: ClassVar[bool] = True
+    """Whether all its particles have one mass."""
     looks: ClassVar[str] = LOOKS[0]
     """As what it is shown."""
 
@@ -107,6 +109,18 @@ class Part:
     def claimed(self, layout: Any, grid: Sequence[np.ndarray], tolerance: float) -> np.ndarray:
         """True at the points of a ``grid`` that it claims in a ``layout``, as psph.scene.shapes.inside."""
         return inside(self.shape, grid, tolerance)
+
+    def places(self, layout: Any) -> np.ndarray | None:
+        """Where its particles are (n, dim), m, if they are on no sites of a ``layout``; else None."""
+        return None
+
+    def begins(self, layout: Any) -> dict[str, np.ndarray]:
+        """Fields of such particles by name (n, ...), of which a table tells other numbers, or none."""
+        return {}
+
+    def particle_mass(self, cell: float, dimensions: int) -> float:
+        """Mass of one of its particles, kg, the mean where they differ; ``cell`` kg are in that of a site."""
+        return cell / self.finer**dimensions
 
     @property
     def jitter(self) -> float:

@@ -1,0 +1,212 @@
+"""Ideal gases that start from files: what is read, what is refused, and what comes of it on any ranks."""
+
+import csv
+import re
+
+import h5py
+import numpy as np
+import pytest
+from drafts import draft, refusal
+from gauging import start
+from mpi4py import MPI
+from parallel.written import written
+from physics.test_gas import numbers_around, of
+from runs.resuming import go_on_elsewhere
+
+from psph.output.export.command import export
+from psph.output.reader import Run
+from psph.runs.start import run
+from psph.scene import Scene, check
+
+CLOUD = """
+scheme = "gas"
+[space]
+dimensions = 2
+spacing = 0.05
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.0, 1.0]
+[time]
+end = 0.02
+[ideal_gases.cloud]
+file = "cloud.npz"
+gamma = 1.6666666666666667
+"""
+NAMES = {"position": "Coordinates", "velocity": "Velocities", "mass": "Masses"}
+NAMES |= {"thermal_energy": "InternalEnergy", "id": "ParticleIDs"}
+
+
+def particles(count=400):
+    """Four times as many in one half as in the other, of masses that differ up to threefold."""
+    random = np.random.default_rng(7)
+    x = random.random((count, 2))
+    x[:, 0] = np.where(random.random(count) < 0.8, 0.5 * x[:, 0], 0.5 + 0.5 * x[:, 0])
+    return {
+        "position": x,
+        "velocity": 0.3 * random.normal(size=(count, 2)),
+        "mass": (1.0 + 2.0 * random.random(count)) / count,
+        "thermal_energy": 1.0 + random.random(count),
+        "id": 10 + random.permutation(count),
+    }
+
+
+def write(path, fields):
+    """The particles in a file of any of the three kinds."""
+    match path.suffix:
+        case ".npz":
+            np.savez(path, **fields)
+        case ".csv":
+            columns = dict(zip(("x", "y", "vx", "vy"), np.hstack([fields["position"], fields["velocity"]]).T))
+            columns |= {name: fields[name] for name in ("mass", "thermal_energy", "id") if name in fields}
+            with open(path, "w", newline="") as file:
+                csv.writer(file).writerows(
+                    [columns, *zip(*(map(repr, map(float, c)) for c in columns.values()))]
+                )
+        case _:
+            with h5py.File(path, "w") as file:
+                for name, values in fields.items():
+                    padded = np.pad(values, ((0, 0), (0, 1))) if values.ndim == 2 else values
+                    file[f"PartType0/{NAMES[name]}"] = padded
+
+
+def begun(folder, name, fields, *sets):
+    """The simulation of a file before its first step."""
+    write(folder / name, fields)
+    return start(draft(folder, CLOUD, f'ideal_gases.cloud.file="{name}"', *sets))
+
+
+def in_order(simulation, *names):
+    order = np.argsort(of(simulation, "id")[0])
+    return [values[order] for values in of(simulation, *names)]
+
+
+@pytest.mark.parametrize("name", ["cloud.npz", "cloud.csv", "cloud.hdf5"])
+def test_a_file_tells_places_velocities_masses_and_heat_and_nothing_else(tmp_path, name):
+    fields = particles()
+    simulation = begun(tmp_path, name, fields, "space.periodic=[]")
+    rows = np.argsort(fields["id"])
+    told = [name for name in NAMES if name != "id"]
+    for name, values in zip(told, in_order(simulation, *told)):
+        assert np.array_equal(values, fields[name][rows]), name
+    [h] = of(simulation, "smoothing_length")
+    assert h.max() > 2.0 * h.min()
+    assert numbers_around(simulation, h) == pytest.approx(1.4**2, rel=1e-5)
+
+
+def test_rows_in_another_order_are_the_same_particles(tmp_path):
+    fields, shuffled = particles(), np.random.default_rng(1).permutation(400)
+    first = begun(tmp_path, "one.npz", fields)
+    second = begun(tmp_path, "other.npz", {name: values[shuffled] for name, values in fields.items()})
+    for simulation in (first, second):
+        for _ in range(3):
+            simulation.step()
+    for one, other in zip(*(in_order(s, "position", "thermal_energy") for s in (first, second))):
+        assert np.array_equal(one, other)
+
+
+def test_what_is_exported_starts_again_as_it_was(tmp_path):
+    """Places, velocities, masses and heat to the bit; densities as near as smoothing lengths are found."""
+    write(tmp_path / "cloud.npz", particles())
+    run(draft(tmp_path, CLOUD), tmp_path / "out", MPI.COMM_SELF)
+    export(tmp_path / "out", "gadget", [0.02], tmp_path)
+    [snapshot] = tmp_path.glob("*.hdf5")
+    frame = Run(tmp_path / "out").frame(-1)
+    order = np.argsort(frame["id"])
+    assert frame["mass"].max() > 2.0 * frame["mass"].min()
+    again = start(draft(tmp_path, CLOUD, f'ideal_gases.cloud.file="{snapshot.name}"'))
+    names = ("position", "velocity", "mass", "thermal_energy")
+    for name, values in zip(names, in_order(again, *names)):
+        assert np.array_equal(values, frame[name][order]), name
+    for name, values in zip(("density", "pressure"), in_order(again, "density", "pressure")):
+        assert values == pytest.approx(frame[name][order], rel=1e-5)
+
+
+def test_a_reader_sees_masses_that_differ(tmp_path):
+    pynbody = pytest.importorskip("pynbody", reason="the extra `readers` is not installed")
+    write(tmp_path / "cloud.npz", particles())
+    run(draft(tmp_path, CLOUD, "time.end=1e-3"), tmp_path / "out", MPI.COMM_SELF)
+    export(tmp_path / "out", "gadget", [0.0], tmp_path)
+    [snapshot], frame = tmp_path.glob("*.hdf5"), Run(tmp_path / "out").frame(0)
+    seen = pynbody.load(str(snapshot)).gas
+    assert np.array_equal(seen["mass"], frame["mass"]) and np.array_equal(seen["u"], frame["thermal_energy"])
+
+
+def test_a_case_moves_and_heats_what_a_file_has(tmp_path):
+    fields = particles()
+    sets = ("ideal_gases.cloud.velocity=[1.0, 2.0]", "ideal_gases.cloud.pressure=3.0")
+    simulation = begun(tmp_path, "cloud.npz", fields, *sets)
+    v, p = in_order(simulation, "velocity", "pressure")
+    assert v == pytest.approx(fields["velocity"][np.argsort(fields["id"])] + [1.0, 2.0], abs=1e-15)
+    assert p == pytest.approx(3.0, rel=1e-12)
+
+
+def changed(name, row, value):
+    fields = particles()
+    fields[name][row] = value
+    return fields
+
+
+def without(name):
+    return {other: values for other, values in particles().items() if other != name}
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "says"),
+    [
+        ("cloud.hdf5", without("mass"), "has no Masses, only Coordinates, .*; add it"),
+        ("cloud.npz", without("velocity"), "has no velocity, only .*; add it"),
+        ("cloud.csv", changed("mass", 5, -0.5), "row 6: mass is -0.5; give a number above 0"),
+        ("cloud.hdf5", changed("thermal_energy", 5, -2.0), "row 6: thermal_energy is -2; give .* above 0"),
+        ("cloud.npz", changed("velocity", (7, 1), np.nan), "row 8: velocity is nan; give a number"),
+        ("cloud.npz", changed("id", 3, particles()["id"][9]), "row 10: its id .* was given before"),
+        ("cloud.npz", without("thermal_energy"), "has no thermal energy; add it to the file, or give"),
+        ("cloud.npz", particles() | {"mass": np.ones(7)}, "position has 400 rows and mass 7"),
+        ("cloud.npz", particles() | {"position": np.ones(400)}, r"position has the shape \(400,\); give"),
+        ("cloud.npz", {n: v[:0] for n, v in particles().items()}, "has no particle"),
+    ],
+)
+def test_a_file_that_is_wrong_is_told_in_a_line(tmp_path, name, fields, says):
+    write(tmp_path / name, fields)
+    [line] = refusal(tmp_path, CLOUD, f'ideal_gases.cloud.file="{name}"')
+    assert re.search(f"ideal_gases.cloud.file: .*{says}", line), line
+
+
+@pytest.mark.parametrize(
+    ("sets", "says"),
+    [
+        ('ideal_gases.cloud.file="none.npz"', "none.npz.*give a file that is there"),
+        ('ideal_gases.cloud.file="case.toml"', "is not a snapshot in HDF5, a CSV file or NumPy's .npz"),
+        ("ideal_gases.cloud.density=1.0", "density: the file says"),
+        ("ideal_gases.cloud.spacing=0.025", "spacing: the file says"),
+        ("ideal_gases.cloud.shape.box={ lower = [0.0, 0.0], upper = [1.0, 1.0] }", "shape: the file says"),
+        ("space.dimensions=1", "cloud.npz.*has places in 2D; give space.dimensions = 2"),
+    ],
+)
+def test_what_does_not_go_with_a_file_is_told(tmp_path, sets, says):
+    write(tmp_path / "cloud.npz", particles())
+    lines = refusal(tmp_path, CLOUD, sets)
+    assert any(re.search(says, line) for line in lines), lines
+
+
+@pytest.mark.parametrize("kept", ["cloud.hdf5", "cloud.npz", "cloud.csv"])
+def test_files_that_cannot_be_read_are_told(tmp_path, kept):
+    (tmp_path / kept).write_bytes(b"no particles\x00 here")
+    [line] = refusal(tmp_path, CLOUD, f'ideal_gases.cloud.file="{kept}"')
+    assert kept in line and ";" in line
+
+
+def test_particles_outside_the_domain_and_too_few_are_told(tmp_path):
+    write(tmp_path / "cloud.npz", changed("position", (4, 0), 1.5))
+    with pytest.raises(ValueError, match=r"file: cloud.npz: row 5 is at x = 1.5 m, outside .*; change"):
+        check(Scene(draft(tmp_path, CLOUD)))
+    write(tmp_path / "cloud.npz", {name: values[:9] for name, values in particles().items()})
+    with pytest.raises(ValueError, match="9 particles in all, and space.smoothing asks for 24 neighbours"):
+        check(Scene(draft(tmp_path, CLOUD)))
+
+
+@pytest.mark.mpi(min_size=2)
+@pytest.mark.parametrize(("before", "after"), [(1, 2), (2, 1)])
+def test_files_have_the_same_bits_on_any_ranks_and_after_a_checkpoint(mpi_tmp_path, before, after):
+    if MPI.COMM_WORLD.rank == 0:
+        write(mpi_tmp_path / "cloud.npz", particles())
+    go_on_elsewhere(written(mpi_tmp_path, CLOUD), before, after, mpi_tmp_path)
