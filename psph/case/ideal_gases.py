@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, PlainSerializer
+from pydantic import BeforeValidator, PlainSerializer, WrapValidator
+from pydantic_core import PydanticCustomError
 
 from psph.acts import BODIES, FLUIDS, FRAME, IDEAL_GASES, MIXED, SOILS, SOLIDS, SYMMETRY, UPDATED, speaks_for
 from psph.case.findings import Finding
-from psph.case.forms import Box
-from psph.case.keys import key
+from psph.case.keys import AXES, key
 from psph.case.matter import FreeMatter
+from psph.case.place_formulas import RADIUS, Formula, names_in
 from psph.case.schemes import GAS
 from psph.case.shapes import Shape
 from psph.case.snapshots import Snapshot
@@ -29,7 +30,7 @@ REPELLING = ("wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic", "g
 """Kernels that fall smoothly from r = 0, so that a smoothing length is found by Newton's method."""
 
 
-OF_SITES = ("shape", "density", "spacing", "jitter")
+OF_SITES = ("shape", "density", "stretch", "spacing", "jitter")
 """Keys of a gas that starts on sites, and not from a file."""
 
 
@@ -37,6 +38,18 @@ def _named(value: Any) -> Any:
     """A file by its name alone."""
     return {"file": value} if isinstance(value, str) else value
 
+
+def _positive(value: Any, validate) -> Any:
+    """One message for what is neither a number above 0 nor a formula."""
+    if not isinstance(value, (int, float, str)) or isinstance(value, bool):
+        raise PydanticCustomError("psph", "neither a number nor a formula; give one of them")
+    if not isinstance(value, str) and not value > 0.0:
+        raise PydanticCustomError("psph", "a number that must be above 0; give a larger one")
+    return validate(value)
+
+
+Positive = Annotated[float | Formula, WrapValidator(_positive)]
+"""A number above 0, or a formula of place."""
 
 OfFile = Annotated[
     Snapshot, BeforeValidator(_named), PlainSerializer(lambda snapshot: snapshot.file, return_type=str)
@@ -54,14 +67,31 @@ class IdealGas(FreeMatter):
         "Gadget's, CSV or .npz, in the case's folder or below",
         None,
     )
-    density: float | None = key(
-        "density at the start", None, unit="kg/m3", otherwise="that of the particles of file", gt=0
+    velocity: tuple[float | Formula, ...] | None = key(  # type: ignore[assignment]
+        "velocity at the start: numbers, or formulas",
+        None,
+        unit="m/s",
+        otherwise="zeros",
+        strict=False,
     )
-    pressure: float | None = key(
-        "pressure at the start", None, unit="Pa", otherwise="that of thermal_energy, or of file", gt=0
+    density: Positive | None = key(
+        "density at the start, or a formula of x, y, z and r, the distance from the middle of its shape, by "
+        "masses that differ",
+        None,
+        unit="kg/m3",
+        otherwise="that of the particles of file",
     )
-    thermal_energy: float | None = key(
-        "thermal energy by mass at the start, in place of the pressure", None, unit="J/kg", gt=0
+    stretch: Literal["x", "y", "z", "r"] | None = key(
+        "the coordinate that density is a formula of, along which particles of one mass then stand closer: "
+        "an axis of a box, or r of a disc or ball",
+        None,
+        otherwise="masses differ",
+    )
+    pressure: Positive | None = key(
+        "pressure at the start, or a formula", None, unit="Pa", otherwise="that of thermal_energy, or of file"
+    )
+    thermal_energy: Positive | None = key(
+        "thermal energy by mass at the start, in place of the pressure", None, unit="J/kg"
     )
     gamma: float = key("adiabatic index γ: 5/3 of one atom, 7/5 of two", 1.4, unit="1", gt=1, le=10)
     spacing: float | None = key(
@@ -102,8 +132,8 @@ class IdealGas(FreeMatter):
             here = ("ideal_gases", name)
             for where, value, says in gas._of_file(space) if gas.file else gas._of_shape():
                 yield (*here, *where), value, says
-            if isinstance(gas.velocity, str):
-                yield (*here, "velocity"), gas.velocity, "no exact solution has gases; give numbers"
+            for where, value, says in gas._formulas(space.dimensions):
+                yield (*here, *where), value, says
             finer = gas.finer(space.spacing)
             if abs(space.spacing - finer * (gas.spacing or space.spacing)) > SAME * space.spacing or (
                 finer > FINEST
@@ -135,38 +165,46 @@ class IdealGas(FreeMatter):
         if None not in told[:2]:
             yield ("pressure",), self.pressure, "give pressure or thermal_energy, and not both"
 
+    def _formulas(self, dimensions: int) -> Iterator[Finding]:
+        """Formulas of coordinates that there are not, and a stretch that does not fit."""
+        velocity, known = self.velocity or (), {*AXES[:dimensions], RADIUS}
+        if velocity and len(velocity) != dimensions:
+            yield ("velocity",), velocity, f"{len(velocity)} numbers or formulas; give {dimensions}"
+        told = {("velocity", k): one for k, one in enumerate(velocity)}
+        told |= {(name,): getattr(self, name) for name in ("density", "pressure", "thermal_energy")}
+        for where, value in told.items():
+            for foreign in sorted(names_in(value) - known):
+                yield where, value, f"there is no {foreign} in {dimensions}D; give {', '.join(sorted(known))}"
+        if self.stretch is None or self.shape is None:
+            return
+        if names_in(self.density) != {self.stretch}:
+            yield ("stretch",), self.stretch, f"needs density as a formula of {self.stretch} alone; give one"
+            return
+        fits = ("disc", "ball") if self.stretch == RADIUS else ("box",)
+        if self.shape.is_placed or self.shape.form_name not in fits:
+            says = f"moves particles within a {' or '.join(fits)} alone; give such a shape, or remove this"
+            yield ("stretch",), self.stretch, says
+
+    @property
+    def is_even(self) -> bool:
+        """Whether all its particles have one mass."""
+        return self.file is None and (self.stretch is not None or not isinstance(self.density, str))
+
     def finer(self, spacing: float) -> int:
         """The ``spacing`` of the scene, m, over its own: a whole number from 1 on."""
         return 1 if self.spacing is None else max(1, round(spacing / self.spacing))
 
     @property
     def heat(self) -> float:
-        """Thermal energy by mass at the start, u = p/((γ − 1) ρ), J/kg."""
+        """Thermal energy by mass at the start, u = p/((γ − 1) ρ), J/kg, where it is the same everywhere."""
         if self.thermal_energy is not None:
             return self.thermal_energy
         return self.pressure / ((self.gamma - 1.0) * self.density)
 
     @property
     def sound_speed(self) -> float:
-        """Of the start, √(γ (γ − 1) u), m/s."""
+        """Of the start, √(γ (γ − 1) u), m/s, where that is the same everywhere."""
         return math.sqrt(self.gamma * (self.gamma - 1.0) * self.heat)
-
-    def settled(self, space) -> Self:
-        """The same in the ``space`` of its case, with the pressure that follows from the thermal energy.
-
-        Of a file: in a box around its particles, with their mean density and heat.
-        """
-        told: dict[str, Any] = {}
-        if self.file:
-            begun = self.file.begun(space.dimensions)
-            lower, upper = begun.ends(space.spacing)
-            mass, heat = float(begun.mass.sum()), begun.thermal_energy
-            told["shape"] = Shape(box=Box(lower=lower, upper=upper))
-            told["density"] = mass / math.prod(up - low for low, up in zip(lower, upper))
-            if self.pressure is None and self.thermal_energy is None:
-                told["thermal_energy"] = float(begun.mass @ heat) / mass
-        known = self.model_copy(update=told)
-        return known.model_copy(update={"pressure": (self.gamma - 1.0) * known.density * known.heat})
 
 
 def _beside(case) -> Iterator[Finding]:

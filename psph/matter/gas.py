@@ -64,11 +64,23 @@ class IdealGases(Kind):
         parts = {part.number: part for part in self.parts}
         length, heat = np.zeros((2, len(species), 1))
         for number, part in parts.items():
-            length[species == number] = self.scene.smoothing_length / part.finer
-            heat[species == number] = part.table.heat
+            own = species == number
+            length[own] = self.scene.smoothing_length / part.finer
+            heat[own, 0] = part.start.heat(position[own])
+        if "mass" in fields:
+            yield "mass", self._masses(species, position)
         yield LENGTH.name, length
         yield HEAT.name, heat
         yield PREDICTED, heat
+
+    def _masses(self, species: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """Mass (n, 1), kg: by the density where a particle is in parts where masses differ."""
+        found = np.array([one.mass for one in self.scene.species])[species][:, None]
+        for part in (one for one in self.parts if not one.one_mass):
+            own = species == part.number
+            mean = self.scene.species[part.number].mass / part.table.density
+            found[own, 0] = mean * part.start.density(position[own])
+        return found
 
     def particles(self) -> Created | None:
         """Those on no sites."""
@@ -94,7 +106,7 @@ class IdealGases(Kind):
         """Particles of files outside the domain, and too few in all."""
         layout = self.scene.layout
         for part in self.parts:
-            yield from part.outside(layout)
+            yield from part.faults(layout)
         count, least = count_of(self.scene), math.ceil(sites_within(self.scene, self.scene.support))
         if count <= least:
             yield (
@@ -126,12 +138,11 @@ class IdealGases(Kind):
     def work(self, rank: Rank) -> Iterator[Work]:
         """Sizes, pressure, and the longest step."""
         groups = len(rank.plan.materials.species)
-        gamma, pressure = np.ones(groups), np.full(groups, np.nan)
-        for part in self.parts:
-            gamma[part.number] = part.table.gamma
-            if part.table.thermal_energy is None:
-                pressure[part.number] = part.table.pressure
-        yield Gases(rank, gamma, pressure, rank.plan.planned[self.name], self.least)
+        gamma = np.ones(groups)
+        gamma[[part.number for part in self.parts]] = [part.table.gamma for part in self.parts]
+        told = (part for part in self.parts if part.start.gas.pressure is not None)
+        pressures = {part.number: part.start.pressure for part in told}
+        yield Gases(rank, gamma, pressures, rank.plan.planned[self.name], self.least)
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What each is, how far particles reach, and what comes before the pass over pairs."""

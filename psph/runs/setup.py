@@ -185,9 +185,8 @@ def _few_particles(scene, plan: Plan, store: Store) -> None:
     it has the types of the whole run."""
     further = [group for kind in plan.matter for group in kind.rehearsed()] or [0]
     groups = np.array([0, *further], np.uint8)
-    middle = np.tile(
-        [0.5 * (a + b) for a, b in zip(scene.layout.lower, scene.layout.upper)], (len(groups), 1)
-    )
+    middle = [0.5 * (a + b) for a, b in zip(scene.layout.lower, scene.layout.upper)]
+    middle = np.tile(scene.layout.parts[0].somewhere(middle), (len(groups), 1))
     density = np.full(len(groups), scene.species[0].density)
     block = block_of(scene, plan.materials, store, groups, middle, np.zeros_like(middle), density)
     store.append(np.arange(len(groups)), groups, block)

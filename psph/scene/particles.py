@@ -70,7 +70,8 @@ def fill(particles: ParticleSet, starts: Starts, first: int, last: int) -> None:
         _dry(chunk, starts, sites, begin, end)
         _kick(chunk, starts, sites, begin, end)
         _shift(chunk, starts)
-        _sheared(chunk, starts)
+        _stretch(chunk, starts)
+        _flow(chunk, starts)
         _as_exact(chunk, starts)
         done += len(sites)
 
@@ -80,8 +81,9 @@ def settled_at(starts: Starts, ids: np.ndarray, material: np.ndarray, position: 
     they are, ``position`` (n, dim) m."""
     found = ParticleSet.empty(len(ids), position.shape[1], 0)
     found.id[:], found.material[:], found.position[:] = ids, material, position
+    _stretch(found, starts)
     _start(found, starts)
-    _sheared(found, starts)
+    _flow(found, starts)
     _as_exact(found, starts)
     return found
 
@@ -159,12 +161,19 @@ def _within(position: np.ndarray, shift: np.ndarray, part: int, starts: Starts) 
     return shift
 
 
-def _sheared(chunk: ParticleSet, starts: Starts) -> None:
-    """The gradient of the velocity at the start, where each particle now is."""
+def _stretch(chunk: ParticleSet, starts: Starts) -> None:
+    """Particles of one mass go to where their part has its density."""
+    for index in np.unique(chunk.material):
+        rows = chunk.material == index
+        chunk.position[rows] = starts.layout.parts[index].stretched(chunk.position[rows])
+
+
+def _flow(chunk: ParticleSet, starts: Starts) -> None:
+    """What differs of the velocity at the start, where each particle now is."""
     for index, part in enumerate(starts.layout.parts):
         rows = chunk.material == index
-        if part.moves_freely and part.table.velocity_gradient and rows.any():
-            chunk.velocity[rows] += part.table.sheared(chunk.position[rows])
+        if rows.any() and (more := part.flow(chunk.position[rows])) is not None:
+            chunk.velocity[rows] += more
 
 
 def _as_exact(chunk: ParticleSet, starts: Starts) -> None:

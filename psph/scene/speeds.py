@@ -62,7 +62,7 @@ class Speeds:
         kicked = kicked_velocities(self.layout, self.kicks, self.velocities)
         moving = (math.hypot(*v) for v in (*self.velocities, *kicked))
         sheared = (fastest_corner(self.census, n, self.velocities[n]) for n in parts.movers)
-        return max(known, *moving, *sheared)
+        return max(known, *moving, *sheared, *(part.fastest for part in parts))
 
     @cached_property
     def sound_speed(self) -> float:

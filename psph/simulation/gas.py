@@ -1,6 +1,8 @@
 """Ideal gases on a rank: smoothing lengths, density and pressure before the sums over pairs, the longest step
 and the books after them."""
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
 from psph.engine.threads import in_threads
@@ -50,16 +52,23 @@ class Pace:
 class Gases(Work):
     """The particles of the ideal gases of a scene on a ``rank``.
 
-    ``gamma`` and ``pressure`` hold γ and the pressure of the start, Pa, of each group; NaN where the case
-    gives its thermal energy.  ``pace`` is that of the plan, the same on every rank.  ``least`` is the share
-    of the viscosity where nothing shocks, None where particles have no shares.
+    ``gamma`` holds γ of each group; ``pressures`` give that of the start, Pa (n,), at places (n, dim), by the
+    groups of which the case tells it.  ``pace`` is that of the plan, the same on every rank.  ``least`` is
+    the share of the viscosity where nothing shocks, None where particles have no shares.
     """
 
     name = "ideal_gases"
 
-    def __init__(self, rank: Rank, gamma: np.ndarray, pressure: np.ndarray, pace: Pace, least: float | None):
+    def __init__(
+        self,
+        rank: Rank,
+        gamma: np.ndarray,
+        pressures: Mapping[int, Callable[[np.ndarray], np.ndarray]],
+        pace: Pace,
+        least: float | None,
+    ):
         scene, self._plan, self._store, self._domain, _ = rank
-        self._gamma, self._pressure, self._pace = gamma, pressure, pace
+        self._gamma, self._pressures, self._pace = gamma, pressures, pace
         self._least = least
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
@@ -100,11 +109,12 @@ class Gases(Work):
     def heat(self) -> None:
         """At the start, the thermal energy that gives each particle the pressure of the case."""
         store, inner = self._store, self._store.inner
-        group = store.group[inner]
-        of_pressure = self._pressure[group] / ((self._gamma[group] - 1.0) * store["density"][inner])
-        given = ~np.isnan(of_pressure)
-        for name in (HEAT.name, PREDICTED):
-            store[name][inner][given] = of_pressure[given]
+        group, position, density = store.group[inner], store.owned_rows("position"), store["density"][inner]
+        for number, pressure in self._pressures.items():
+            own = group == number
+            heat = pressure(position[own]) / ((self._gamma[number] - 1.0) * density[own])
+            for name in (HEAT.name, PREDICTED):
+                store[name][inner][own] = heat
 
     def press(self) -> None:
         """Pressure and speed of sound as the forces read them; raises Unsized where there is no heat left."""

@@ -122,6 +122,7 @@ END = {
     "tension/jet": 0.05,
     "gas/sod": 0.05,
     "gas/sedov": 0.01,
+    "gas/gresho": 0.05,
     "gravity/self_gravitating_drop": 400.0,
     "gravity/collapse": 1.0,
     "machines/rheometer": 5e-3,

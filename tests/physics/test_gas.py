@@ -130,42 +130,6 @@ def test_without_friction_heat_is_the_work_of_compression(tmp_path):
     assert np.abs(plain - expected).mean() > 0.02 * size
 
 
-def sound(tmp_path, count, *sets):
-    """Part by which sound is slower than √(γp/ρ), from a standing wave a quarter of that period on."""
-    path = tmp_path / "tube.toml"
-    path.write_text(f"""
-scheme = "gas"
-[space]
-dimensions = 1
-spacing = {1.0 / count}
-periodic = ["x"]
-lower = [0.0]
-upper = [1.0]
-[time]
-end = 1.0
-cfl = 0.1
-[ideal_gases.air]
-shape.box = {{ lower = [0.0], upper = [1.0] }}
-density = 1.0
-pressure = 0.7142857142857143
-""")
-    simulation = start(load(path, (*CALM, *sets)))
-    store, k = simulation.store, 2.0 * np.pi
-    wave = 1e-5 * np.sin(k * store["position"][0])
-    for name in ("velocity", "predicted_velocity"):
-        store[name][0][:] = wave
-    end = 0.25 / of(simulation, "sound")[0].mean()
-    while simulation.time < end:
-        simulation.step(end)
-    x, v = of(simulation, "position", "velocity")
-    return 2.0 * (v[:, 0] @ np.sin(k * x[:, 0])) * 2.0 / count / 1e-5 / np.pi
-
-
-def test_sound_is_right_to_second_order(tmp_path):
-    coarse, fine = (abs(sound(tmp_path, count)) for count in (32, 64))
-    assert fine < 0.0025 and coarse / fine > 3.6
-
-
 DENSE, THIN = GasState(1.0, 1.0), GasState(0.125, 0.1)
 
 

@@ -1,7 +1,7 @@
 """Ideal gases as parts of a scene."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -15,6 +15,7 @@ from psph.fields import VELOCITY
 from psph.particles.reach import Reach
 from psph.physics.gas.state import HEAT, LENGTH, OfHeat
 from psph.scene.lattice import TOLERANCE
+from psph.scene.parts.gas_profile import GasProfile
 from psph.scene.parts.part import Part
 
 COUNTED = 8
@@ -24,8 +25,12 @@ BALL = {1: 2.0, 2: math.pi, 3: 4.0 / 3.0 * math.pi}
 """Volume of a ball of 1 m in each dimension."""
 
 
+@dataclass(frozen=True)
 class GasPart(Part):
-    """An ideal gas, whose particles have sizes of their own; its table has a pressure."""
+    """An ideal gas, whose particles have sizes of their own; its table has a pressure, and numbers in place
+    of the formulas of its ``start``."""
+
+    start: GasProfile | None = None
 
     @property
     def moves_freely(self) -> bool:
@@ -33,14 +38,39 @@ class GasPart(Part):
         return True
 
     @property
+    def one_mass(self) -> bool:
+        """Unless its density differs on even sites."""
+        return not isinstance(self.start.gas.density, str) or self.start.gas.stretch is not None
+
+    @property
     def wave_speed(self) -> float:
-        """Of sound at the start."""
-        return self.table.sound_speed
+        """Of sound at the start, where that is fastest."""
+        return self.start.fastest_sound
 
     @property
     def own_sound_speed(self) -> float:
-        """The same."""
+        """Of sound at the start, the mean."""
         return self.table.sound_speed
+
+    @property
+    def fastest(self) -> float:
+        """By formulas."""
+        return self.start.fastest
+
+    def flow(self, position: np.ndarray) -> np.ndarray | None:
+        """By formulas too."""
+        more = super().flow(position)
+        if not self.start.flows:
+            return more
+        return self.start.velocity(position) + (0.0 if more is None else more)
+
+    def somewhere(self, middle: Sequence[float]) -> Sequence[float]:
+        """At one of its sites."""
+        return self.start.sites[0].tolist()
+
+    def stretched(self, position: np.ndarray) -> np.ndarray:
+        """Where equal masses have the density."""
+        return self.start.stretched(position)
 
     @property
     def law_key(self) -> str:
@@ -59,20 +89,21 @@ class GasPart(Part):
         """The largest c/h at the start, 1/s."""
         return self.wave_speed * self.finer / layout.smoothing_length
 
-    def outside(self, layout: Any) -> Iterator[str]:
-        """A line where it begins outside the domain."""
-        yield from ()
+    def faults(self, layout: Any) -> Iterator[str]:
+        """A line for each formula without a value somewhere."""
+        yield from (f"{self.key}.{name}: {says}" for name, says in self.start.faults())
 
 
 def gas_part(gas: IdealGas, space) -> tuple[type[GasPart], IdealGas, dict[str, Any]]:
     """The type, the table and what else makes the part of a ``gas`` in the ``space`` of its case."""
-    table = gas.settled(space)
     if gas.file is None:
-        return GasPart, table, {"finer": gas.finer(space.spacing)}
+        start = GasProfile.of(gas, space)
+        return GasPart, start.settled(), {"finer": gas.finer(space.spacing), "start": start}
     begun = gas.file.begun(space.dimensions)
     if gas.pressure is not None or gas.thermal_energy is not None:
         begun = begun._replace(thermal_energy=None)
-    return GivenPart, table, {"begun": begun}
+    start = GasProfile.of_file(gas, begun, space.spacing)
+    return GivenPart, start.settled(), {"begun": begun, "start": start}
 
 
 @dataclass(frozen=True)
@@ -81,8 +112,12 @@ class GivenPart(GasPart):
 
     begun: Begun | None = None
 
-    one_mass: ClassVar[bool] = False
     drawn: ClassVar[bool] = False
+
+    @property
+    def one_mass(self) -> bool:
+        """No."""
+        return False
 
     @property
     def wave_speed(self) -> float:
@@ -90,24 +125,31 @@ class GivenPart(GasPart):
         return float(self.sound.max())
 
     @property
+    def fastest(self) -> float:
+        """Of its particles."""
+        return super().fastest + float(np.sqrt((self.begun.velocity**2).sum(axis=1)).max())
+
+    @property
     def sound(self) -> np.ndarray:
         """Speed of sound of each particle at the start (n,), m/s."""
-        heat = self.begun.thermal_energy
-        own = 1.0 if heat is None else np.sqrt(heat / self.table.heat)
-        return self.table.sound_speed * own * np.ones(len(self.begun.mass))
+        heat, gamma = self.begun.thermal_energy, self.table.gamma
+        heat = self.start.heat(self.begun.position) if heat is None else heat
+        return np.sqrt(gamma * (gamma - 1.0) * heat)
 
     def quickest(self, layout: Any) -> float:
         """The largest c/h at the start, 1/s."""
         return float((self.sound / layout.begun[self.number][LENGTH.name]).max())
 
-    def outside(self, layout: Any) -> Iterator[str]:
-        """A line for the first of its particles that is."""
-        slack, (begun, table) = TOLERANCE * layout.spacing, (self.begun, self.table)
+    def faults(self, layout: Any) -> Iterator[str]:
+        """A line for the first of its particles outside the domain too."""
+        yield from super().faults(layout)
+        slack, begun = TOLERANCE * layout.spacing, self.begun
         for d, x in enumerate(begun.position.T):
             low, up = layout.lower[d], layout.upper[d]
             for k in np.flatnonzero((x < low - slack) | (x > up + slack))[:1]:
+                at = f"row {begun.row[k]} is at {AXES[d]} = {x[k]:.6g} m"
                 yield (
-                    f"{self.key}.file: {table.file.file}: row {begun.row[k]} is at {AXES[d]} = {x[k]:.6g} m, "
+                    f"{self.key}.file: {self.table.file.file}: {at}, "
                     f"outside the domain from {low:.6g} to {up:.6g}; change space.lower and space.upper"
                 )
                 return

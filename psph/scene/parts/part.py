@@ -77,8 +77,6 @@ class Part:
     """Whether it may begin without a particle."""
     drawn: ClassVar[bool] = True
     """Whether the case draws its shape, from which another can be subtracted."""
-    one_mass: ClassVar[bool] = True
-    """Whether all its particles have one mass."""
     looks: ClassVar[str] = LOOKS[0]
     """As what it is shown."""
 
@@ -121,6 +119,29 @@ class Part:
     def particle_mass(self, cell: float, dimensions: int) -> float:
         """Mass of one of its particles, kg, the mean where they differ; ``cell`` kg are in that of a site."""
         return cell / self.finer**dimensions
+
+    @property
+    def one_mass(self) -> bool:
+        """Whether all its particles have one mass."""
+        return True
+
+    @property
+    def fastest(self) -> float:
+        """The largest speed of its start that differs by place and that no corner of a box tells, m/s."""
+        return 0.0
+
+    def flow(self, position: np.ndarray) -> np.ndarray | None:
+        """What differs by place of its velocity at the start (n, dim), m/s; None: nothing does."""
+        gradient = self.moves_freely and self.table.velocity_gradient
+        return self.table.sheared(position) if gradient else None
+
+    def stretched(self, position: np.ndarray) -> np.ndarray:
+        """Where its particles start that would be on even places, ``position`` (n, dim), m."""
+        return position
+
+    def somewhere(self, middle: Sequence[float]) -> Sequence[float]:
+        """A place where it can be, m; where it can be anywhere, the ``middle`` of the domain."""
+        return middle
 
     @property
     def jitter(self) -> float:
