@@ -28,7 +28,8 @@ class NumberOf(Table):
         "of response the period of the wave", None, unit="s", otherwise="that of its column", gt=0
     )
     rest: float | None = key(
-        "of largest_wave and waves the time without overtopping that tells two waves apart",
+        "of largest_wave and waves the time without overtopping that tells two waves apart; of crests the "
+        "least from one wave to the next",
         None,
         unit="s",
         gt=0,

@@ -44,9 +44,11 @@ TAKEN = {
     "significant_height": Taking(spectra.significant_height, "4 standard deviations of a level"),
     "peak_period": Taking(spectra.peak_period, "the period at the peak of the spectrum", "s"),
     "highest_third": Taking(spectra.highest_third, "the mean height of the highest third of the waves"),
-    "mean_crest": Taking(crests.mean_crest, "the mean of the highest value of each wave", reads=("level",)),
+    "mean_crest": Taking(
+        crests.mean_crest, "the mean of the highest value of each wave", reads=("level", "rest")
+    ),
     "rare_crest": Taking(
-        crests.rare_crest, "what 2 % of the highest values of each wave exceed", reads=("level",)
+        crests.rare_crest, "what 2 % of the highest values of each wave exceed", reads=("level", "rest")
     ),
     "discharge": Taking(overtopping.discharge, "what goes over a crest", "L/(m s)"),
     "largest_wave": Taking(
