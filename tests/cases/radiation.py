@@ -58,7 +58,7 @@ def forces(w, beam, draught, depth, panel):
         ([(-half, 0.0), (-far, 0.0)], panel),
         ([(-far, 0.0), (-far, -depth)], 2.0 * panel),
     )
-    parts = [_panels(corners, size) for corners, size in sides]
+    parts = [panels(corners, size) for corners, size in sides]
     which = np.repeat(np.arange(len(parts)), [len(one) for one in parts])
     ends = np.concatenate(parts)
     middle, along = ends.mean(axis=1), ends[:, 1] - ends[:, 0]
@@ -76,7 +76,7 @@ def forces(w, beam, draught, depth, panel):
     high = k * (middle[:, 1] + depth)
     wave = size * np.cosh(high)
     slope = k * size * (1j * np.cosh(high) * out[:, 0] + np.sinh(high) * out[:, 1])
-    doubled, single = _influences(middle, ends, along, out, length)
+    doubled, single = influences(middle, ends, along, out, length)
     given = np.column_stack([pushed, np.where(box, -slope, 0.0)])
     potential = np.linalg.solve(doubled - single * share, single @ given)
     potential[:, 3] += wave
@@ -84,7 +84,7 @@ def forces(w, beam, draught, depth, panel):
     return force[:, :3], force[:, 3]
 
 
-def _panels(corners, size):
+def panels(corners, size):
     """Ends (n, 2, 2) of panels along a polygon."""
     found = []
     for first, last in zip(map(np.array, corners), map(np.array, corners[1:])):
@@ -94,7 +94,7 @@ def _panels(corners, size):
     return np.concatenate(found)
 
 
-def _influences(middle, ends, along, out, length):
+def influences(middle, ends, along, out, length):
     """∫∂ln r/∂n ds − π for the panel itself, and ∫ln r ds, of each panel at the middle of each."""
     to = ends[None] - middle[:, None, None]
     s, d = np.einsum("pqed,qd->epq", to, along), np.einsum("pqd,qd->pq", to[:, :, 0], out)

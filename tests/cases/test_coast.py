@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from cases.measures import finished, window
 from cases.radiation import G, forces, responses
+from cases.slope_by_boundaries import shoreline
 from long import LONG
 
+from psph.theory.curves.crests import mean_crest
 from psph.theory.curves.number import Curve
 from psph.theory.curves.oscillation import harmonic
 from psph.theory.curves.overtopping import discharge, number_of_waves
@@ -122,6 +124,29 @@ def test_a_solitary_wave_runs_up_a_beach_as_synolakis_says(tmp_path):
     damping = "physics.reconstructed_damping={alpha=0.03,in_disorder=0.2}"
     braked = finished("coast/run_up", tmp_path / "braked", *plain, damping, "time.end=4.0")
     assert run_up(braked) < 0.9 * synolakis
+
+
+def test_deep_water_swings_on_a_slope_as_isaacson_says():
+    """2 √(π/2β) at the shore of the angle β (1950, Commun. Pure Appl. Math. 3, 11), and of shallower water more."""
+    for cot in (1.0, 2.0):
+        exact = 2.0 * math.sqrt(0.5 * math.pi / math.atan(1.0 / cot))
+        assert shoreline(0.75, 0.45, cot, 0.015) == pytest.approx(exact, rel=0.02)
+    assert shoreline(1.3, 0.3, 2.0, 0.02) > 1.05 * exact
+
+
+@LONG
+@pytest.mark.timeout(1800)
+def test_waves_run_up_a_slope_as_eurotop_says(tmp_path):
+    """Regular waves stand for those that 2 % of a sea exceed, 1.4 H_m0 high, whose run-up is R_u2%.  The control:
+    Hunt's R = ξH (1959) is of waves that break."""
+    period, gauges = 1.3, finished("coast/wave_run_up", tmp_path / "run").gauges()
+    places = {"first": 1.2, "second": 1.5, "third": 1.9}
+    height = 2.0 * incident(gauges, places, period, 0.3, 5.2)
+    found = (mean_crest(later(gauges["tongue"], "tongue.height", 5.2), rest=0.6).value - 0.1) / height
+    steep = 0.5 / math.sqrt(2.0 * math.pi * height / (G * period**2))
+    assert found == pytest.approx((4.0 - 1.5 / math.sqrt(steep)) / 1.4, rel=0.15)
+    assert found == pytest.approx(0.5 * shoreline(period, 0.3, 2.0, 0.02), rel=0.15)
+    assert steep > 3.3 and found < 0.75 * steep
 
 
 def eurotop(height, freeboard):

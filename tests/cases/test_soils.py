@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from cases.cone_by_characteristics import bearing
 from cases.measures import by_id, finished, roughness, window
 from long import LONG, tell
 from numpy.polynomial import polynomial
@@ -142,6 +143,26 @@ def test_clay_bears_a_punch_as_prandtl_has_it(tmp_path):
     tell(f"punch in clay over (2 + π) c: {borne[time > 0.3].mean():.3f}")
     assert borne[time > 0.3].mean() == pytest.approx(1.0, abs=0.08)
     assert borne[time > 0.4].mean() == pytest.approx(borne[(time > 0.2) & (time < 0.3)].mean(), rel=0.05)
+
+
+def test_characteristics_have_what_a_flat_punch_bears():
+    """5.69 c of a smooth one (Shield 1955); a sharper cone bears less, a rough one more."""
+    assert bearing(180.0) == pytest.approx(5.69, abs=0.01)
+    assert bearing(60.0, step=0.01, fan=40) == pytest.approx(bearing(60.0), rel=1e-3)
+    assert bearing(60.0) < 0.8 * bearing(180.0) < bearing(60.0, roughness=1.0)
+
+
+@LONG
+def test_clay_bears_a_cone_as_characteristics_have_it(tmp_path):
+    """N = F/(π R² c): the control is a cone along which the clay does not slide."""
+    borne = {}
+    for name, keys, rough in (("smooth", (), 0.0), ("rough", ("bodies.cone.no_slip=true",), 1.0)):
+        push = finished("soils/cone", tmp_path / name, *keys).gauges()["push"]
+        area = 0.25 * math.pi * 0.2**2  # of the quarter
+        borne[name] = window(push, "push.force_z", 0.25, 0.3).mean() / (1e4 * area)
+        tell(f"{name} cone in clay: {borne[name]:.2f} c, theory {bearing(60.0, rough):.2f} c")
+        assert borne[name] == pytest.approx(bearing(60.0, rough), rel=0.08)
+    assert borne["rough"] > 1.3 * borne["smooth"]
 
 
 @LONG
