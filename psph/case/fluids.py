@@ -9,7 +9,7 @@ from pydantic_core import PydanticCustomError
 from psph.acts import FLUIDS
 from psph.case.findings import Finding, frictions_of
 from psph.case.keys import AXES, Name, key
-from psph.case.matter import FreeMatter
+from psph.case.matter import RELAXED, FreeMatter, relaxed_findings
 from psph.case.physics import own_law
 from psph.case.placed import Answering
 from psph.case.rheology import Rheology
@@ -21,9 +21,6 @@ from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 HYDROSTATIC = "hydrostatic"
 """The pressure at the start of a fluid that is under its own weight."""
-
-RELAXED = "relaxed"
-"""The start of a fluid without order, but evenly crowded."""
 
 Law, LAW = own_law()
 
@@ -95,7 +92,8 @@ class Fluid(FreeMatter):
         yield from _hydrostatic(case)
         yield from _exact(case)
         yield from _rheologies(case)
-        yield from _relaxed(case)
+        for name, fluid in case.fluids.items():
+            yield from relaxed_findings(case, ("fluids", name), fluid)
         yield from tension_findings(case)
         for name in case.walls.keys() & case.fluids.keys():
             yield ("walls", name), ..., "a fluid has this name too; give the wall another"
@@ -130,21 +128,6 @@ def _exact(case) -> Iterator[Finding]:
                         else "the case has no exact solution; give [exact], or numbers"
                     ),
                 )
-
-
-def _relaxed(case) -> Iterator[Finding]:
-    """A relaxed start where there is no disorder, or beside what speaks of sites."""
-    for name, fluid in case.fluids.items():
-        if fluid.start != RELAXED:
-            continue
-        loc = "fluids", name, "start"
-        if case.space.dimensions == 1:
-            yield loc, fluid.start, "a row of particles has but one even order; remove this key"
-        if case.perturbations:
-            yield loc, fluid.start, "perturbations name sites of the lattice; remove them, or this key"
-        if fluid.jitter:
-            says = 'start = "relaxed" has a disorder of its own; remove one of the two'
-            yield ("fluids", name, "jitter"), fluid.jitter, says
 
 
 def _rheologies(case) -> Iterator[Finding]:

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 from psph.acts import BODIES, FLUIDS, FRAME, IDEAL_GASES, MIXED, SOILS, SOLIDS, SYMMETRY, UPDATED, speaks_for
 from psph.case.findings import Finding
 from psph.case.keys import AXES, key
-from psph.case.matter import FreeMatter
+from psph.case.matter import RELAXED, FreeMatter, relaxed_findings
 from psph.case.place_formulas import RADIUS, Formula, names_in
 from psph.case.schemes import GAS
 from psph.case.shapes import Shape
@@ -30,7 +30,9 @@ REPELLING = ("wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic", "g
 """Kernels that fall smoothly from r = 0, so that a smoothing length is found by Newton's method."""
 
 
-OF_SITES = ("shape", "density", "stretch", "spacing", "jitter")
+HEXAGONAL = "hexagonal"
+
+OF_SITES = ("shape", "density", "start", "stretch", "spacing", "jitter")
 """Keys of a gas that starts on sites, and not from a file."""
 
 
@@ -80,6 +82,11 @@ class IdealGas(FreeMatter):
         None,
         unit="kg/m3",
         otherwise="that of the particles of file",
+    )
+    start: Literal["lattice", HEXAGONAL, RELAXED] = key(
+        'where particles are at the start: "lattice"; "hexagonal", packed closest; or "relaxed", without '
+        "order but evenly crowded, as a glass",
+        "lattice",
     )
     stretch: Literal["x", "y", "z", "r"] | None = key(
         "the coordinate that density is a formula of, along which particles of one mass then stand closer: "
@@ -134,7 +141,14 @@ class IdealGas(FreeMatter):
                 yield (*here, *where), value, says
             for where, value, says in gas._formulas(space.dimensions):
                 yield (*here, *where), value, says
+            yield from relaxed_findings(case, here, gas)
             finer = gas.finer(space.spacing)
+            if gas.start == RELAXED and finer > 1:
+                yield (
+                    (*here, "spacing"),
+                    gas.spacing,
+                    'start = "relaxed" has that of space; remove one of the two',
+                )
             if abs(space.spacing - finer * (gas.spacing or space.spacing)) > SAME * space.spacing or (
                 finer > FINEST
             ):
@@ -154,7 +168,7 @@ class IdealGas(FreeMatter):
     def _of_file(self, space) -> Iterator[Finding]:
         """The same of one from a file."""
         for name in OF_SITES:
-            if getattr(self, name):
+            if getattr(self, name) not in (None, 0.0, "lattice"):
                 yield (name,), ..., "the file says where its particles are and how many; remove this key"
         if wrong := self.file.misfit(space.dimensions):
             yield ("file",), self.file.file, wrong

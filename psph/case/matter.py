@@ -1,16 +1,21 @@
 """What fluids and solids have in common: where they are at the start, and how they move then."""
 
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import WrapValidator
 from pydantic_core import PydanticCustomError
 
+from psph.case.findings import Finding, Location
 from psph.case.keys import Vector, key
 from psph.case.placed import Placed
 from psph.case.shapes import Shape
 from psph.case.study import EXACT
 from psph.rows import projected
+
+RELAXED = "relaxed"
+"""The start of what flows without order, but evenly crowded."""
 
 
 def _velocity(value: Any, validate) -> Any:
@@ -50,3 +55,18 @@ class FreeMatter(Placed):
     def sheared(self, x: np.ndarray) -> np.ndarray:
         """What ``velocity_gradient`` adds to the velocity at ``x`` (n, dim), m/s (n, dim)."""
         return np.column_stack([projected(x - self.velocity_center, row) for row in self.velocity_gradient])
+
+
+def relaxed_findings(case, here: Location, matter: Any) -> Iterator[Finding]:
+    """A start of ``matter`` in another order than the lattice's where there is none, or beside what speaks of
+    sites."""
+    loc, start = (*here, "start"), matter.start
+    if start == "lattice":
+        return
+    if case.space.dimensions == 1:
+        yield loc, start, "a row of particles has but one even order; remove this key"
+    if case.perturbations:
+        yield loc, start, "perturbations name sites of the lattice; remove them, or this key"
+    if matter.jitter:
+        says = f'start = "{start}" has an order of its own; remove one of the two'
+        yield (*here, "jitter"), matter.jitter, says

@@ -92,7 +92,8 @@ class IdealGases(Kind):
         number = np.repeat([part.number for part in apart], counts)
         position = np.concatenate([layout.placed[part.number] for part in apart])
         found = settled_at(starts, np.arange(len(number)), number, position)
-        values = {"mass": found.mass, **{name: x[:, 0] for name, x in self.starts((), number, position)}}
+        begun = self.starts(("mass",), number, found.position)
+        values = {name: x[:, 0] for name, x in begun}
         for part, last in zip(apart, np.cumsum(counts)):
             rows = slice(last - len(layout.placed[part.number]), last)
             for name, own in layout.begun[part.number].items():
@@ -100,7 +101,7 @@ class IdealGases(Kind):
                     found.velocity[rows] += own
                 else:
                     values[name][rows] = own
-        return Created(number, position, found.velocity, found.density, values, of_parts=True)
+        return Created(number, found.position, found.velocity, found.density, values, of_parts=True)
 
     def faults(self) -> Iterator[str]:
         """Particles of files outside the domain, and too few in all."""

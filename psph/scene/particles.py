@@ -1,5 +1,6 @@
 """Particles on the sites of the lattice, some planes at a time."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,7 +71,7 @@ def fill(particles: ParticleSet, starts: Starts, first: int, last: int) -> None:
         _dry(chunk, starts, sites, begin, end)
         _kick(chunk, starts, sites, begin, end)
         _shift(chunk, starts)
-        _stretch(chunk, starts)
+        _stretch(chunk, starts, (part.number for part in starts.layout.parts if not part.relaxes))
         _flow(chunk, starts)
         _as_exact(chunk, starts)
         done += len(sites)
@@ -81,7 +82,7 @@ def settled_at(starts: Starts, ids: np.ndarray, material: np.ndarray, position: 
     they are, ``position`` (n, dim) m."""
     found = ParticleSet.empty(len(ids), position.shape[1], 0)
     found.id[:], found.material[:], found.position[:] = ids, material, position
-    _stretch(found, starts)
+    _stretch(found, starts, np.unique(material))
     _start(found, starts)
     _flow(found, starts)
     _as_exact(found, starts)
@@ -161,9 +162,9 @@ def _within(position: np.ndarray, shift: np.ndarray, part: int, starts: Starts) 
     return shift
 
 
-def _stretch(chunk: ParticleSet, starts: Starts) -> None:
-    """Particles of one mass go to where their part has its density."""
-    for index in np.unique(chunk.material):
+def _stretch(chunk: ParticleSet, starts: Starts, parts: Iterable[int]) -> None:
+    """Particles of one mass go to where their part, one of some, has its density."""
+    for index in parts:
         rows = chunk.material == index
         chunk.position[rows] = starts.layout.parts[index].stretched(chunk.position[rows])
 

@@ -87,7 +87,7 @@ class Starts:
             Species(
                 name=part.name,
                 motion=motion,
-                mass=part.particle_mass(start.mass(volume), layout.dimensions),
+                mass=part.particle_mass(start.mass(volume), layout),
                 one_mass=part.one_mass,
                 cell_count=part.finer**layout.dimensions,
                 law=start.law,

@@ -3,12 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from psph.case.fluids import RELAXED
+from psph.case.matter import RELAXED
 from psph.scene.parts.part import Known, Part
-
-SHAKEN = 1.0
-"""Largest random shift along each axis, in spacings, from which a fluid relaxes: from half of it particles go
-back to their rows."""
 
 
 @dataclass(frozen=True)
@@ -24,11 +20,6 @@ class FluidPart(Part):
     def relaxes(self) -> bool:
         """As its table says."""
         return self.table.start == RELAXED
-
-    @property
-    def shake(self) -> float:
-        """Of its table, or that from which it relaxes."""
-        return SHAKEN if self.relaxes else super().shake
 
     @property
     def rheology(self) -> Any:

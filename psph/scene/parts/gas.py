@@ -8,12 +8,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from psph.case import Case
-from psph.case.ideal_gases import IdealGas
+from psph.case.ideal_gases import HEXAGONAL, IdealGas
 from psph.case.keys import AXES
+from psph.case.matter import RELAXED
 from psph.case.snapshots import Begun
 from psph.fields import VELOCITY
 from psph.particles.reach import Reach
 from psph.physics.gas.state import HEAT, LENGTH, OfHeat
+from psph.scene.hexagonal import sites_of, steps_of
 from psph.scene.lattice import TOLERANCE
 from psph.scene.parts.gas_profile import GasProfile
 from psph.scene.parts.part import Part
@@ -63,6 +65,24 @@ class GasPart(Part):
         if not self.start.flows:
             return more
         return self.start.velocity(position) + (0.0 if more is None else more)
+
+    @property
+    def relaxes(self) -> bool:
+        """As its table says."""
+        return self.table.start == RELAXED
+
+    def places(self, layout: Any) -> np.ndarray | None:
+        """Those of the closest packing, where it starts so."""
+        if self.table.start != HEXAGONAL:
+            return None
+        return sites_of(layout, self.number, layout.spacing / self.finer)
+
+    def particle_mass(self, cell: float, layout: Any) -> float:
+        """By the volume that a particle has."""
+        if self.table.start != HEXAGONAL:
+            return super().particle_mass(cell, layout)
+        volume = math.prod(steps_of(layout, layout.spacing / self.finer))
+        return cell * volume / layout.spacing**layout.dimensions
 
     def somewhere(self, middle: Sequence[float]) -> Sequence[float]:
         """At one of its sites."""
@@ -162,7 +182,7 @@ class GivenPart(GasPart):
         """Those of the file, within the periods of a ``layout``."""
         return np.stack([layout.folded(d, x) for d, x in enumerate(self.begun.position.T)], axis=1)
 
-    def particle_mass(self, cell: float, dimensions: int) -> float:
+    def particle_mass(self, cell: float, layout: Any) -> float:
         """The mean."""
         return float(self.begun.mass.mean())
 

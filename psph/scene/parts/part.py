@@ -13,6 +13,10 @@ from psph.fields import WALL
 from psph.particles.reach import Reach
 from psph.scene.shapes import inside
 
+SHAKEN = 1.0
+"""Largest random shift along each axis, in spacings, from which particles relax: from half of it they go
+back to their rows."""
+
 LOOKS = ("fluid", "wall", "elastic solid", "rigid body")
 """As what particles are shown by other programs, in the order of its numbers there."""
 
@@ -116,9 +120,10 @@ class Part:
         """Fields of such particles by name (n, ...), of which a table tells other numbers, or none."""
         return {}
 
-    def particle_mass(self, cell: float, dimensions: int) -> float:
-        """Mass of one of its particles, kg, the mean where they differ; ``cell`` kg are in that of a site."""
-        return cell / self.finer**dimensions
+    def particle_mass(self, cell: float, layout: Any) -> float:
+        """Mass of one of its particles, kg, the mean where they differ; ``cell`` kg are in that of a site of
+        a ``layout``."""
+        return cell / self.finer**layout.dimensions
 
     @property
     def one_mass(self) -> bool:
@@ -150,8 +155,8 @@ class Part:
 
     @property
     def shake(self) -> float:
-        """The same of the places that its particles get first."""
-        return self.jitter
+        """The same of the places that its particles get first: as told, or that from which they relax."""
+        return SHAKEN if self.relaxes else self.jitter
 
     @property
     def relaxes(self) -> bool:
