@@ -262,6 +262,7 @@ OF_MATERIAL = (
         Numbered,
     ),
     _fixed("wetting", "1", "cosine of the angle at which surfaces of fluids meet a wall or body, else 0"),
+    _fixed("wetting_range", "1", "half the difference of that of lines that recede and advance"),
     _fixed("penalty", "1", "1 in a wall that pushes back what comes too near, else 0"),
     _fixed("shear_modulus", "Pa", "shear modulus of what bears an evolved stress, else 0"),
     _fixed("wave_modulus", "Pa", "P-wave modulus by which a contact of solids and walls is stiff, else 0"),

@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Strict
 
 from psph.acts import BODIES, FRAME, ONE, speaks_for
+from psph.case.angles import CONTACT_ANGLE, ContactAngle
 from psph.case.findings import Finding
 from psph.case.keys import AXES, Name, Vector, key
 from psph.case.lines import Line, tied
@@ -75,14 +76,7 @@ class Body(Placed):
     lines: dict[Name, Line] = key("springs, dampers and mooring lines by name", {})
     no_slip: bool = key("the fluid has the body's velocity at its face; needs a viscosity", False)
     condition: Literal[BEARING] = key("how it acts on the fluid, as the condition of a wall", DYNAMIC)
-    contact_angle: float | None = key(
-        "angle at which surfaces of fluids meet it, measured through the heavier one; needs a tension",
-        None,
-        unit="degrees",
-        otherwise="90",
-        gt=0,
-        lt=180,
-    )
+    contact_angle: ContactAngle | None = CONTACT_ANGLE
     continues: Name | None = key(
         "the fluid whose density and initial pressure its particles have",
         None,

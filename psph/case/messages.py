@@ -117,7 +117,7 @@ def _as_written(details: Details, data: Any) -> Location:
         if is_place or isinstance(data, dict) and key in data:
             data = data[key]
             loc.append(key)
-        elif details["type"] == "missing" and isinstance(data, dict):
+        elif details["type"] == "missing" and isinstance(data, dict) and key == details["loc"][-1]:
             loc.append(key)
     return tuple(loc)
 
@@ -146,7 +146,7 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
         return f"{plain(value)} is not {WANTED[kind]}; {_how_to_give(details, loc, schema)}"
     if kind in ("too_short", "too_long"):
         return _length(details, loc)
-    if limits := _range(schema, node):
+    if limits := _range(schema, node or find(schema, loc)):
         return f"{plain(value)} is out of range; it must be {limits}"
     return f"{plain(value)}: {details['msg']}"
 

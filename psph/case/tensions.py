@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from psph.acts import ONE, refusals
+from psph.case.angles import UPRIGHT, ContactAngles
 from psph.case.corners import present
 from psph.case.errors import advise
 from psph.case.findings import Finding
@@ -11,9 +12,6 @@ from psph.physics.surface.tension import SurfaceTension
 from psph.physics.walls.conditions import MIRROR
 
 KEY = "interfacial_tension"
-
-UPRIGHT = 90.0
-"""Degrees between a surface and what it meets where nothing else is told."""
 
 
 def tensions_in(case) -> dict[str, tuple[float, ...]]:
@@ -66,6 +64,21 @@ def _angles(case) -> Iterator[Finding]:
         elif entry.of.condition == MIRROR and angle != UPRIGHT:
             says = "surfaces meet a mirror at 90 degrees; take another condition, or remove this key"
             yield loc, angle, says
+        elif isinstance(angle, ContactAngles) and _lines_of_the_lighter(case):
+            says = (
+                "walls remember the lines of the heaviest fluid alone; give one angle, or remove the tensions"
+            )
+            yield loc, ..., f"{says} of lighter ones at a free surface and between them"
+
+
+def _lines_of_the_lighter(case) -> bool:
+    """Whether fluids other than the heaviest have tensions of their own."""
+    fluids = list(case.fluids.items())
+    heaviest, _ = max(fluids, key=lambda one: one[1].density)
+    told = dict(_told(case))
+    lighter = [(name, fluid) for name, fluid in fluids if name != heaviest]
+    between = (told.get(_pair(one, other)) for (one, _), (other, _) in combinations(lighter, 2))
+    return any(fluid.surface_tension for _, fluid in lighter) or any(between)
 
 
 def _asked(case) -> Iterator[tuple[str, ...]]:

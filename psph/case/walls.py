@@ -5,6 +5,7 @@ from typing import Any, ClassVar, Literal, Self
 from pydantic import create_model, model_validator
 from pydantic_core import PydanticCustomError
 
+from psph.case.angles import CONTACT_ANGLE, ContactAngle
 from psph.case.keys import Name, Vector, key
 from psph.case.motion import Motions, motions_type
 from psph.case.placed import Answering, Placed
@@ -45,14 +46,7 @@ class Wall(Placed):
         None,
         otherwise="the first fluid, or soil",
     )
-    contact_angle: float | None = key(
-        "angle at which surfaces of fluids meet it, measured through the heavier one; needs a tension",
-        None,
-        unit="degrees",
-        otherwise="90",
-        gt=0,
-        lt=180,
-    )
+    contact_angle: ContactAngle | None = CONTACT_ANGLE
     displaces: bool = key("it replaces fluid and soil where they overlap at the start, as a body does", False)
 
     called: ClassVar = "wall"

@@ -50,6 +50,7 @@ from psph.physics.stress.spreading import StressSlopes
 from psph.physics.stress.strength import Strength
 from psph.physics.surface.contact import ContactAngle, ContactLine
 from psph.physics.surface.free import FreeSurface, TensionFloor
+from psph.physics.surface.hysteresis import LineMemory
 from psph.physics.surface.tension import SurfaceTension
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.physics.walls.dry import DryWall
@@ -142,6 +143,7 @@ CATALOGUE = (
     Entry("fluids.*.rheology", ApparentViscosity),
     Entry("fluids.*.surface_tension|fluids.*.interfacial_tension", SurfaceTension),
     Entry("fluids.*.surface_tension|fluids.*.interfacial_tension", ContactLine),
+    Entry("walls.*.contact_angle", LineMemory),
     Entry("walls.*.contact_angle", ContactAngle),
     Entry("walls.*.no_slip|solids.*.no_slip", NoSlip),
     Entry("solids.*.no_slip", SolidTurn),

@@ -33,7 +33,8 @@ class Species(NamedTuple):
     ``sound_speed`` in m/s is the numerical one; ``fluid`` is the number of a fluid among those of the case
     from 1 on, 0 of what is none, and ``tensions`` in N/m are first its surface tension and then those between
     it and each fluid, in this order; empty where the case tells none; ``wetting`` is the cosine of the angle
-    at which surfaces of fluids meet a wall or a body.
+    at which surfaces of fluids meet a wall or a body, the mean of those of lines that advance and recede, and
+    ``wetting_range`` half of their difference.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Species(NamedTuple):
     tensions: tuple[float, ...] = ()
     wetting: float = 0.0
     one_mass: bool = True
+    wetting_range: float = 0.0
 
     @property
     def inertia(self) -> float:

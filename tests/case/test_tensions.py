@@ -17,6 +17,7 @@ shape.disc = { center = [2.0, 2.0], radius = 0.5 }
 AIR = "fluids.air={shape={disc={center=[1.0,2.0],radius=0.3}}}"
 WALL = "walls.side={shape={box={lower=[0.0,0.0],upper=[3.0,0.3]}}}"
 MIRROR = "walls.side={shape={box={lower=[0.0,0.0],upper=[3.0,0.3]}},condition='mirror'}"
+MEMORY = "walls.side.contact_angle={advancing=110.0,receding=70.0}"
 BETWEEN = "fluids.water.interfacial_tension={oil=0.03}"
 
 
@@ -82,6 +83,22 @@ def test_each_fluid_knows_its_own_and_those_of_its_pairs(tmp_path):
         (
             (BETWEEN, WALL, "walls.side.contact_angle=180.0"),
             "walls.side.contact_angle: 180.0 is out of range",
+        ),
+        (
+            (BETWEEN, WALL, "walls.side.contact_angle={advancing=60.0,receding=70.0}"),
+            "walls.side.contact_angle: receding is above advancing",
+        ),
+        (
+            (BETWEEN, WALL, "walls.side.contact_angle={advancing=60.0}"),
+            "walls.side.contact_angle.receding: missing",
+        ),
+        (
+            (BETWEEN, "fluids.oil.surface_tension=0.1", WALL, MEMORY),
+            "walls.side.contact_angle: walls remember the lines of the heaviest fluid alone; give one angle, or",
+        ),
+        (
+            (BETWEEN, MIRROR, MEMORY),
+            "walls.side.contact_angle: surfaces meet a mirror at 90 degrees; take another condition, or",
         ),
         (
             (BETWEEN, MIRROR, "walls.side.contact_angle=60.0"),

@@ -121,6 +121,7 @@ END = {
     "tension/film": 0.1,
     "tension/liquid_bridge": 0.05,
     "tension/sliding_drop": 0.1,
+    "tension/sticking_drop": 0.1,
     "tension/jet": 0.05,
     "gas/sod": 0.05,
     "gas/sedov": 0.01,

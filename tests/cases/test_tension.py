@@ -275,6 +275,39 @@ def test_a_drop_runs_down_a_wall_by_its_weight_over_its_viscosity():
     assert abs(running("physics.gravity=[0.0,-0.1]")[0]) < 0.05 * mean
 
 
+def creeping(*keys, after=10.0):
+    """Of the drop of the case that sticks: how far it comes in 8 s after that time, and before, in the means of
+    4 s, m."""
+    simulation = start(load(f"{CASES}/tension/sticking_drop.toml", keys))
+    store, means = simulation.store, []
+    for begin in (after, after + 8.0):
+        found = []
+        while simulation.time < begin + 4.0:
+            simulation.step()
+            if simulation.time > begin:
+                x = np.array(store["position"])[0, store.inner]
+                found.append(x[store.group[store.inner] == 0].mean())
+        means.append(np.mean(found))
+    return means[1] - means[0], means[0]
+
+
+def test_a_drop_sticks_to_a_tilted_wall_below_the_limit_of_its_angles():
+    """σ (cos 70° − cos 110°) = 0.68 N/m: its weight is 0.48, and of the control, which slides, 0.80."""
+    further, leans = creeping()
+    assert abs(further) < 0.04 and 0.1 < leans < 0.3
+    assert creeping("physics.gravity=[0.5,-0.1]", after=4.0)[0] > 0.4
+
+
+def test_a_drop_that_is_thrown_sticks_where_it_comes_to_rest():
+    further, leans = creeping("physics.gravity=[0.2,-0.1]", "fluids.water.velocity=[1.0,0.0]")
+    assert abs(further) < 0.04 and leans > 0.1
+
+
+def test_with_one_angle_the_same_drop_slides():
+    """The control: 0.1 m/s and more."""
+    assert creeping("walls.floor.contact_angle=90.0", after=1.0)[0] > 0.8
+
+
 @LONG
 def test_a_jet_breaks_into_drops_of_the_flow_of_a_period():
     """Beyond 12 R each piece between two gaps is 9π R³ of water."""

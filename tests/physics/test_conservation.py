@@ -46,7 +46,7 @@ from psph.physics.gas.shocks import KernelViscosity
 from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
-from psph.physics.surface.contact import AtAngle, ContactAngle, ContactLine, HeldByWalls
+from psph.physics.surface.contact import AtAngle, AtRememberedAngle, ContactAngle, ContactLine, HeldByWalls
 from psph.physics.surface.tension import Blunt, SurfaceTension, TensionAmong, TensionOfOne, Tensions
 from psph.smoothing import kernel
 
@@ -66,7 +66,7 @@ BLUNT = Blunt(1e9, 1.0 / (4.0 * H * H), 1.0, H)
 AMONG = TensionAmong(0.1, 0.1, BLUNT, 1.0, (Tensions(0.3, (0.0, 0.5)),) * 3, (1.0, 2.0), (1.0, 1.0), 1.8)
 """Tension of the fluids of a crowd, the first of which has two particles."""
 
-AT_WALLS = (ContactLine, ContactAngle)
+AT_WALLS = (ContactLine, ContactAngle, AtRememberedAngle)
 
 IN_VOLUMES = (VolumePressure, VolumeCorrection, VolumeBackground, CorrectedVolumeBackground)
 """What several fluids feel in place of the forms of one."""
@@ -100,6 +100,7 @@ def in_a_scene(effect, dim):
         "TensionAmong": lambda: AMONG,
         "ContactLine": lambda: HeldByWalls(0.1, BLUNT, 1.0),
         "ContactAngle": lambda: AtAngle(0.1, 0.3, BLUNT, 1.0, 1e9),
+        "AtRememberedAngle": lambda: AtRememberedAngle(0.1, 0.3, BLUNT, 1.0, 1e9),
         "GasPressure": lambda: GasPressure(kernel("wendland-c2", 1.0, dim)),
         "ShockViscosity": lambda: KernelViscosity(1.0, 2.0, kernel("wendland-c2", 1.0, dim)),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
@@ -153,7 +154,15 @@ def rates(effect, p):
 @pytest.mark.parametrize("dim", (1, 2, 3))
 @pytest.mark.parametrize(
     "effect",
-    [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper, VolumeDamper, TensionAmong, *IN_VOLUMES],
+    [
+        *claiming(MOMENTUM),
+        CorrectedRub,
+        CorrectedDamper,
+        VolumeDamper,
+        TensionAmong,
+        AtRememberedAngle,
+        *IN_VOLUMES,
+    ],
 )
 def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
     p = crowd(dim)

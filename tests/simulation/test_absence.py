@@ -123,9 +123,10 @@ BESIDE = {
 def calling_for(entry) -> list[str]:
     """Overrides that call for the effect of an entry."""
     key, _, choice = entry.key.partition("|")[0].partition("=")
-    if entry.effect.__name__ in ("ContactLine", "ContactAngle"):
+    if entry.effect.__name__ in ("ContactLine", "ContactAngle", "LineMemory"):
         slippery = STICKY[0].replace(", no_slip=true", "")
-        return [slippery, "fluids.water.surface_tension=0.001", "walls.side.contact_angle=60.0"]
+        angle = "{advancing=70.0,receding=50.0}" if entry.effect.__name__ == "LineMemory" else "60.0"
+        return [slippery, "fluids.water.surface_tension=0.001", f"walls.side.contact_angle={angle}"]
     if key.startswith("walls."):
         return [*STICKY, *(["walls.side.no_slip=false", f"walls.side.condition={choice}"] if choice else [])]
     if choice:

@@ -133,7 +133,9 @@ class ContactAngle(NamedTuple):
         blunt = blunt_kernel(scene.kernel, dx, dimensions)
         full = -first_moment(scene.kernel, dx, dimensions)
         steep, upright, flat = (pulled_line(blunt, scene.kernel, dx, dimensions, cos) for cos in COSINES)
-        return AtAngle(
+        remembered = any(one.wetting_range for one in scene.species)
+        form = AtRememberedAngle if remembered else AtAngle
+        return form(
             largest / upright,
             (flat - steep) / upright,
             blunt,
@@ -182,10 +184,39 @@ class AtAngle(NamedTuple):
     def push(self, i, j, pair):
         """Acceleration by a neighbour, m/s²."""
         wets, wetted = met(i, j)
-        own, other = wets * _pull(self, j.wetting), wetted * _pull(self, i.wetting)
-        pull = subtract(scale(_along(i, self), own), scale(_along(j, self), other))
-        weight = self.strength * blunt(self.kernel, pair)
-        return scale(pull, weight * (i.specific_volume * j.specific_volume * j.mass))
+        return _pulled_along(self, i, j, pair, wetted * i.wetting, wets * j.wetting)
+
+
+class AtRememberedAngle(NamedTuple):
+    """Surfaces of fluids meet walls and bodies at an angle between two, which these remember.
+
+    :class:`AtAngle`, where the angle of a line is that of its place (psph.physics.surface.hysteresis).
+    """
+
+    conserves = ("momentum",)
+
+    strength: float
+    lean: float
+    kernel: Blunt
+    level2: float
+    full: float
+
+    writes = SIDE
+    start, gather, finish_value = AtAngle.start, AtAngle.gather, AtAngle.finish_value
+
+    def push(self, i, j, pair):
+        """Acceleration by a neighbour, m/s²."""
+        wets, wetted = met(i, j)
+        return _pulled_along(self, i, j, pair, wetted * i.line_cosine, wets * j.line_cosine)
+
+
+@helper
+def _pulled_along(of, i, j, pair, own, other):
+    """Acceleration of a particle by a neighbour along the wall that one of them is of, m/s²; ``own`` and
+    ``other``: cos φ where i, where j is the wall, else 0."""
+    pull = subtract(scale(_along(i, of), _pull(of, other)), scale(_along(j, of), _pull(of, own)))
+    weight = of.strength * blunt(of.kernel, pair)
+    return scale(pull, weight * (i.specific_volume * j.specific_volume * j.mass))
 
 
 @helper

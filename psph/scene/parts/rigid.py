@@ -1,8 +1,8 @@
 """Walls and rigid bodies as parts of a scene: what flows and what is elastic runs into them."""
 
-import math
 from typing import Any
 
+from psph.case.angles import cosines
 from psph.scene.parts.part import Known, Part
 
 
@@ -15,11 +15,13 @@ class RigidPart(Part):
 
     def own(self, known: Known) -> dict[str, Any]:
         """What it sets to the fluid before it; beside elastic solids the largest of their moduli."""
+        wetting, wetting_range = cosines(self.table.contact_angle)
         return super().own(known) | {
             "no_slip": self.table.no_slip,
             "condition": self.table.condition,
             "wave_modulus": max(known.wave_moduli, default=0.0),
-            "wetting": math.cos(math.radians(self.table.contact_angle)) if self.table.contact_angle else 0.0,
+            "wetting": wetting,
+            "wetting_range": wetting_range,
         }
 
 
