@@ -65,10 +65,8 @@ def _angles(case) -> Iterator[Finding]:
             says = "surfaces meet a mirror at 90 degrees; take another condition, or remove this key"
             yield loc, angle, says
         elif isinstance(angle, ContactAngles) and _lines_of_the_lighter(case):
-            says = (
-                "walls remember the lines of the heaviest fluid alone; give one angle, or remove the tensions"
-            )
-            yield loc, ..., f"{says} of lighter ones at a free surface and between them"
+            says = "walls remember the lines of the heaviest fluid alone; give one angle, or remove the "
+            yield loc, ..., f"{says}tensions of lighter ones at a free surface and between them"
 
 
 def _lines_of_the_lighter(case) -> bool:
