@@ -14,7 +14,8 @@ from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, OF_GASES, OF_SWI
 from psph.scene.particles import settled_at
 from psph.scene.parts.gas import GasPart
 from psph.scene.sites import sites_within
-from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, find_sizes
+from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
+from psph.simulation.stages import nothing
 from psph.smoothing import weight
 
 FORCE_LIMIT = 0.25
@@ -54,8 +55,8 @@ class IdealGases(Kind):
     @property
     def sizes(self) -> Sizes:
         """By the smoothing length of each particle."""
-        reach = self.scene.layout.reach
-        return Sizes(self.scene.kernel.support, reach.skin, LENGTH.name, LISTED_LENGTH.name)
+        skin = self.scene.case.neighbours.skin
+        return Sizes(self.scene.kernel.support, skin, LENGTH.name, LISTED_LENGTH.name)
 
     def starts(
         self, fields: Container[str], species: np.ndarray, position: np.ndarray
@@ -121,7 +122,10 @@ class IdealGases(Kind):
 
     def stages(self) -> Mapping[str, Stage]:
         """Sizes and densities are found before the sums over pairs, which read them of neighbours."""
-        return {"sum_over_pairs": Stage(find_sizes, begin_sizes)}
+        return {
+            "renew_lists": Stage(check_lists, nothing),
+            "sum_over_pairs": Stage(find_sizes, begin_sizes),
+        }
 
     def planned(self, plan) -> Pace:
         """What limits the step: at the start by sound at rest."""
@@ -148,6 +152,7 @@ class IdealGases(Kind):
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What each is, how far particles reach, and what comes before the pass over pairs."""
         scene, space = self.scene, self.scene.case.space
+        farther = GROWTH + scene.case.neighbours.skin
         for part in self.parts:
             one = part.table
             yield (
@@ -158,7 +163,7 @@ class IdealGases(Kind):
         yield (
             "reach",
             f"  kernel      {space.kernel}, h = {space.smoothing:g} n^(-1/{scene.dimensions}) of each "
-            f"particle, about {sites_within(scene, scene.support):.0f} neighbours; lists reach {GROWTH:g} "
+            f"particle, about {sites_within(scene, scene.support):.0f} neighbours; lists reach {farther:g} "
             "times the larger support of a pair",
         )
         yield "passes", "Before them smoothing lengths and densities by iteration, without a message"
@@ -173,7 +178,9 @@ class IdealGases(Kind):
 
     def bytes_of_particle(self, plan) -> float:
         """Lists reach farther than those of one size."""
-        return 4.0 * sites_within(self.scene, self.scene.support) * (GROWTH**self.scene.dimensions - 1.0)
+        skin, d = self.scene.case.neighbours.skin, self.scene.dimensions
+        farther = (GROWTH + skin) ** d - (1.0 + skin) ** d
+        return 4.0 * sites_within(self.scene, self.scene.support) * farther
 
     def flops(self) -> float:
         """In the iteration."""

@@ -146,8 +146,9 @@ class Domain:
         told = () if self.sizes is None else (self.sizes.listed,)
         self.halo.refresh(self.ghost_fields + self.refreshed + told)
         if self.sizes is not None:
+            store, listed = self.store, self.store[self.sizes.listed]
             self.lists = list_by_levels(
-                self.store["position"], self.store[self.sizes.listed], self.sizes, self._slab(), lanes
+                self._used_lists(), store["position"], listed, self.sizes, self._slab(), lanes
             )
             return
         self.lists = neighbours.build(
@@ -167,7 +168,8 @@ class Domain:
         """Where this rank's planes begin and end."""
         store, grid = self.store, self.grid
         begin, end = self.bounds[self.comm.rank : self.comm.rank + 2] / grid.inverse[0] + grid.lower[0]
-        return Slab(self.axis, begin, end, store.low, store.owned, store.high, self.periods)
+        sides = store.low, store.owned, store.high
+        return Slab(self.axis, begin, end, *sides, self.periods, self.lower, self.cutoff)
 
     def interior(self) -> tuple[int, int]:
         """Columns of the owned particles that have no ghost among their neighbours."""

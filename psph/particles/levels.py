@@ -2,28 +2,39 @@
 the one before.
 
 A particle that reaches R looks in each level as far as the larger of R and of the largest reach there, so the
-number of candidates for each neighbour does not grow with the ratio of sizes.  Which candidates there are
-depends on the rank, who is a neighbour does not: a row names them by their columns, in rising order, which is
-that of planes, cells and ids on any rank.
+number of candidates for each neighbour does not grow with the ratio of sizes.  All ranks have the same levels
+and cells: a row has its neighbours by level, cell and column, the same order on any rank.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise, inside
+from psph.engine.jit import compiled, inside, overload, register_jitable
+from psph.engine.simd import bits, consecutive, width_of
 from psph.engine.threads import in_threads
-from psph.particles.neighbours import Neighbours, entries_for
+from psph.particles.lanes import LANES, append_near, consecutive_each
+from psph.particles.neighbours import Neighbours, empty, entries_for
 from psph.particles.sizes import Sizes
+from psph.particles.store import SPARE
+from psph.vectors import at, dot, nearest_image, subtract
 
 AXES = 3
 """Axes of a grid; in 1D and 2D the first have one cell."""
 
-CELLS_A_PARTICLE = 2
-"""A level has no more cells than so many for each of its particles: where it is sparse they are wider."""
+CELLS_A_REACH = 2.0
+"""Cells of a level are so many times narrower than its particles reach at the most: of 1, 1.5, 2 and 3 the
+quickest in 3D."""
+
+FARTHEST = 2**20 - 2
+"""Cells from the corner of the domain within which particles have cells of their own; those farther out share
+the outermost."""
+
+BITS = 21
+"""Of a cell's key for each axis."""
 
 SOME = 40
-"""Entries of a row for which there is room at first."""
+"""Entries of a row for which there is room at first; the guess need not be right."""
 
 WIDER = 1.0 + 1e-9
 """Rounding may put a particle into the next cell."""
@@ -31,7 +42,8 @@ WIDER = 1.0 + 1e-9
 
 class Slab(NamedTuple):
     """The slab of a rank along ``axis``: its ``lower`` and ``upper`` edge, m; ``low`` ghosts, ``owned``
-    particles and ``high`` ghosts in its columns; the ``periods`` in m, None for an open axis."""
+    particles and ``high`` ghosts in its columns; the ``periods`` in m, None for an open axis; the lower
+    corner of the domain, ``origin`` (dim,), and the largest reach of all particles, ``cutoff``, m."""
 
     axis: int
     lower: float
@@ -40,193 +52,295 @@ class Slab(NamedTuple):
     owned: int
     high: int
     periods: tuple
-
-
-class Places(NamedTuple):
-    """Where particles are: ``own`` (3, n) as they have it, ``seen`` (3, n) with ghosts beside the slab, how
-    far each reaches, ``reach`` (n,), all in m; ``images`` (3,) are the periods, 0 on an open axis, and
-    ``axis`` is that of the slab."""
-
-    own: np.ndarray
-    seen: np.ndarray
-    reach: np.ndarray
-    images: np.ndarray
-    axis: int
+    origin: tuple
+    cutoff: float
 
 
 class Grids(NamedTuple):
     """The grids of all levels, one after the other.
 
-    ``members`` are the columns of their particles by cell, ``places`` (5, n) these particles' places, m, the
-    place along the slab axis where they are seen, and their reach; ``starts`` the first of each cell among
-    them, ``base`` (levels,) the first cell of each level among ``starts``; ``counts`` (levels, 3) cells along
-    each axis from ``origin`` (levels, 3), m, on, ``inverse`` (levels, 3) how many a metre; ``reach``
-    (levels,) the largest in each, m; ``periods`` (3,) in m, 0 where cells do not go round.
+    ``columns`` (n,) are those of the particles by level, cell and column; ``seen`` (3, n) where they are seen
+    from the slab, m, ``position`` the components of where they are, m, and ``within2`` (n,) the squares of
+    how far they reach, m².  ``keys`` (cells,) are the cells that hold particles, ``starts`` (cells + 1,) the
+    first of each, and ``base`` (levels + 1,) the first cells of levels.  ``inverse`` (levels, 3) is how many
+    cells a metre has from the ``origin`` (3,) on; ``counts`` (levels, 3) after how many cells an axis goes
+    round, 0 where it does not; ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.
     """
 
-    members: np.ndarray
-    places: np.ndarray
+    columns: np.ndarray
+    seen: np.ndarray
+    position: tuple
+    within2: np.ndarray
+    keys: np.ndarray
     starts: np.ndarray
     base: np.ndarray
-    counts: np.ndarray
-    origin: np.ndarray
     inverse: np.ndarray
+    origin: np.ndarray
+    counts: np.ndarray
     reach: np.ndarray
-    periods: np.ndarray
+    periods: tuple
 
 
-def list_by_levels(position, listed, sizes: Sizes, slab: Slab, lanes: int) -> Neighbours:
-    """Lists of the owned particles: of all that are nearer than the larger reach of both, and the skin.
+class OwnedRows(NamedTuple):
+    """OwnedRows to fill: of the ``owned`` columns from ``low`` on, up to a ``multiple`` of entries."""
 
-    ``position`` are component arrays and ``listed`` the smoothing lengths, m, of all columns.  Rows are
-    filled up to a multiple of ``lanes`` with the particle itself.
+    low: int
+    owned: int
+    multiple: int
+
+
+def list_by_levels(room: Neighbours, position, listed, sizes: Sizes, slab: Slab, lanes: int) -> Neighbours:
+    """Lists of the owned particles: of all that are nearer than the larger reach of both.
+
+    ``position`` are component arrays and ``listed`` the smoothing lengths, m, of all columns.  OwnedRows are
+    filled up to a multiple of ``lanes`` with the particle itself.  ``room`` is used again where it is large
+    enough.
     """
     total = slab.low + slab.owned + slab.high
-    places = _places(position, sizes.reach(listed[:total]) + sizes.skin, slab, total)
-    grids, lengths = _grids(places), np.zeros(slab.owned, np.uint32)
-    rows = slab.low, slab.low + slab.owned, slab.low
-    parts = in_threads(fill_levels, *rows, places, grids, lanes, lengths)
-    padded = -(-lengths.astype(np.uint64) // np.uint64(lanes)) * np.uint64(lanes)
-    ends = np.cumsum(padded, dtype=np.uint64)
-    found = Neighbours(ends - padded, lengths, entries_for(sum(map(len, parts))))
-    np.concatenate(parts, out=found.lists)
-    return found
+    grids = _grids([x[:total] for x in position], sizes.reach(listed[:total]), slab)
+    if len(room.begin) < slab.owned:
+        room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
+    # How many entries there are is known once they are written: too little room, and all is done again.
+    while True:
+        rows = OwnedRows(slab.low, slab.owned, lanes)
+        needed = max(in_threads(fill_levels, 0, len(grids.keys), grids, rows, room))
+        if needed == 0:
+            return room
+        room = room._replace(lists=entries_for(needed + needed // SPARE))
 
 
-def _places(position, reach: np.ndarray, slab: Slab, total: int) -> Places:
-    """Where particles are, and where ghosts are seen from the slab."""
-    own, images = np.zeros((AXES, total)), np.zeros(AXES)
-    first = AXES - len(position)
-    for d, (x, period) in enumerate(zip(position, slab.periods)):
-        own[first + d] = x[:total]
-        images[first + d] = period or 0.0
-    seen, axis = own.copy(), first + slab.axis
-    if period := slab.periods[slab.axis]:
-        sides = (slice(0, slab.low), slab.lower), (slice(total - slab.high, total), slab.upper)
-        for ghosts, edge in sides:
-            x = seen[axis, ghosts]
-            x -= period * np.rint((x - edge) / period)
-    return Places(own, seen, reach, images, axis)
-
-
-def _grids(places: Places) -> Grids:
+def _grids(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
     """The levels of particles at these places."""
-    seen, reach, periods = places.seen, places.reach, places.images.copy()
-    periods[places.axis] = 0.0
-    smallest = reach.min(initial=np.inf)
-    levels = np.floor(np.log2(reach / smallest)).astype(np.int64)
-    members, starts, base, shapes = [], [np.zeros(1, np.int64)], [], []
-    begun = cells = 0
-    for level in np.unique(levels):
-        own = np.flatnonzero(levels == level)
-        counts, origin, inverse = _cells(seen[:, own], periods, reach[own].max())
-        at = (seen[:, own] - origin[:, None]) * inverse[:, None]
-        at = np.clip(at.astype(np.int64), 0, counts[:, None] - 1)
-        cell = (at[0] * counts[1] + at[1]) * counts[2] + at[2]
-        members.append(own[np.argsort(cell, kind="stable")])
-        starts.append(begun + np.cumsum(np.bincount(cell, minlength=int(counts.prod()))))
-        base.append(cells)
-        shapes.append((counts, origin, inverse, reach[own].max()))
-        begun, cells = begun + len(own), cells + int(counts.prod())
-    order = np.concatenate([*members, np.zeros(0, np.int64)])
-    counts, origin, inverse, largest = zip(*shapes) if shapes else ([np.zeros(AXES)],) * 3 + ([0.0],)
+    first = AXES - len(position)
+    level = np.floor(np.log2(slab.cutoff * WIDER / reach)).astype(np.int64)
+    levels = np.unique(level)
+    counts, inverse = np.zeros((len(levels), AXES), np.int64), np.zeros((len(levels), AXES))
+    origin, seen = np.zeros(AXES), np.zeros((AXES, len(reach)))
+    key, of = np.zeros(len(reach), np.int64), np.searchsorted(levels, level)
+    for a in range(first):
+        key |= FARTHEST << BITS * (AXES - 1 - a)
+    for d, (x, period) in enumerate(zip(position, slab.periods)):
+        a, wide = first + d, slab.cutoff * 0.5**levels / CELLS_A_REACH
+        origin[a] = slab.origin[d]
+        if period:
+            counts[:, a] = np.ceil(period / wide)  # narrower: no two images of one are candidates
+        inverse[:, a] = counts[:, a] / period if period else 1.0 / wide
+        cell = np.nan_to_num((x - origin[a]) * inverse[of, a], nan=0.0)
+        cell = np.floor(np.clip(cell, -FARTHEST, FARTHEST)).astype(np.int64)
+        seen[a] = x
+        if period:
+            cell = np.clip(cell, 0, counts[of, a] - 1)
+        if period and d == slab.axis:
+            beyond = _beyond(x, period, slab)
+            cell += beyond * counts[of, a]
+            seen[a] += beyond * period
+            counts[:, a] = 0  # ghosts stand where they are seen: it does not go round
+        key |= (np.clip(cell, -FARTHEST, FARTHEST) + FARTHEST) << BITS * (AXES - 1 - a)
+    order = np.lexsort((key, of))
+    key, of = key[order], of[order]
+    starts = np.flatnonzero(np.concatenate([[True], (np.diff(key) != 0) | (np.diff(of) != 0)]))
     return Grids(
         order.astype(np.uint32),
-        np.vstack([places.own, seen[places.axis], reach])[:, order],
-        np.concatenate(starts),
-        np.array(base, np.int64),
-        np.array(counts, np.int64),
-        np.array(origin),
-        np.array(inverse),
-        np.array(largest),
-        periods,
+        seen[:, order],
+        tuple(_padded(x[order]) for x in position),
+        _padded(reach[order] ** 2),
+        key[starts],
+        np.append(starts, len(order)),
+        np.searchsorted(of[starts], np.arange(len(levels) + 1)),
+        inverse,
+        origin,
+        counts,
+        np.maximum.reduceat(reach[order], np.searchsorted(of, np.arange(len(levels)))),
+        tuple(slab.periods),
     )
 
 
-def _cells(places: np.ndarray, periods: np.ndarray, size: float) -> tuple[np.ndarray, ...]:
-    """Numbers of cells, corner and cells a metre of a level, of a ``size`` in m or wider."""
-    lower, upper = places.min(axis=1), places.max(axis=1)
-    repeats = periods > 0.0
-    extent = np.where(repeats, periods, upper - lower)
-    while True:
-        counts = np.maximum(1, (extent / size).astype(np.int64))
-        if counts.prod() <= CELLS_A_PARTICLE * places.shape[1] or (counts == 1).all():
-            break
-        size *= 1.25
-    inverse = counts / np.where(extent > 0.0, extent, 1.0)
-    return counts, lower, inverse
+def _beyond(x: np.ndarray, period: float, slab: Slab) -> np.ndarray:
+    """By how many periods each column is seen beyond its place: 0 but for ghosts."""
+    found = np.zeros(len(x), np.int64)
+    sides = (slice(0, slab.low), slab.lower), (slice(len(x) - slab.high, len(x)), slab.upper)
+    for ghosts, edge in sides:
+        found[ghosts] = -np.rint((x[ghosts] - edge) / period)
+    return found
+
+
+def _padded(values: np.ndarray) -> np.ndarray:
+    """Values and as many more as a register reads behind the last."""
+    return np.concatenate([values, np.zeros(LANES)])
 
 
 @inside
-def along_axis(x, reach, origin, inverse, count, period):
-    """First and last cell of an axis within ``reach`` m of ``x``; beyond the ends where it repeats."""
-    first = np.int64(np.floor((x - reach - origin) * inverse))
-    last = np.int64(np.floor((x + reach - origin) * inverse))
-    if period > 0.0:
-        whole = last - first >= count
-        return (0, count - 1) if whole else (first, last)
-    return max(min(first, count - 1), 0), max(min(last, count - 1), 0)
+def lower_bound(keys, first, last, key):
+    """The first place from ``first`` on, and before ``last``, whose key is not below this, or ``last``."""
+    step = 1
+    while first + step < last and keys[first + step - 1] < key:
+        first += step
+        step *= 2
+    last = min(last, first + step)
+    while first < last:
+        middle = (first + last) // 2
+        if keys[middle] < key:
+            first = middle + 1
+        else:
+            last = middle
+    return first
+
+
+@register_jitable
+def along_axis(low, high, far, inverse, count):
+    """The first and last cell of an axis between ``far`` before ``low`` and ``far`` behind ``high``, m from
+    its origin, and after how many it goes round; beyond its ends where that is after ``count`` cells, or all
+    of them, and −1."""
+    first, last = (low - far) * inverse, (high + far) * inverse
+    # Comparisons that no NaN passes: it must not become a number of a cell.
+    first = np.int64(np.floor(first)) if first > -FARTHEST else -FARTHEST
+    last = np.int64(np.floor(last)) if last < FARTHEST else FARTHEST
+    if count > 0 and last - first >= count:
+        return np.int64(0), np.int64(count - 1), np.int64(-1)
+    return min(first, FARTHEST), max(last, -FARTHEST), np.int64(count)
 
 
 @inside
-def is_near(k, m, places, grids):
-    """Whether particle ``k`` and the member ``m`` are within the larger reach of both, and seen so there."""
-    apart2 = 0.0
-    for a in range(AXES):
-        x = places.own[a, k] - grids.places[a, m]
-        if places.images[a] > 0.0:
-            x -= places.images[a] * np.rint(x / places.images[a])
-        apart2 += x * x
-    within = max(places.reach[k], grids.places[AXES + 1, m])
-    # Of a particle of the slab and its image behind the other side only one is beside another.
-    beside = abs(places.seen[places.axis, k] - grids.places[AXES, m]) <= within * WIDER
-    return beside and apart2 <= within * within
+def extent(grids, first, last):
+    """Corners of the box around the particles ``first`` to ``last``, m from the origin, and their largest
+    reach, m."""
+    low, high, within2 = np.full(AXES, np.inf), np.full(AXES, -np.inf), 0.0
+    for m in range(first, last):
+        for a in range(AXES):
+            x = grids.seen[a, m] - grids.origin[a]
+            low[a], high[a] = min(low[a], x), max(high[a], x)
+        within2 = max(within2, grids.within2[m])
+    return low, high, np.sqrt(within2)
+
+
+@register_jitable
+def around(cell, count):
+    """The cell of an axis that goes round after ``count`` cells, if that is above 0."""
+    return cell % count if count > 0 else cell
+
+
+@register_jitable
+def gap(low, high, cell, inverse, count):
+    """How far a box from ``low`` to ``high``, m from the origin of an axis, is from one of its cells at the
+    least; 0 where the cell has no width, or is one of the outermost."""
+    if inverse == 0.0 or abs(cell) >= FARTHEST or count < 0:
+        return 0.0
+    return max(0.0, cell / inverse - high, low - (cell + 1) / inverse)
 
 
 @inside
-def look_around(k, places, grids, entries, end):
-    """Write the neighbours of ``k`` into ``entries`` from ``end`` on; returns these, longer where that is
-    needed, and the new end."""
-    x = places.seen
-    for level in range(len(grids.base)):
-        far = max(places.reach[k], grids.reach[level]) * WIDER
-        n, origin, inverse = grids.counts[level], grids.origin[level], grids.inverse[level]
-        first0, last0 = along_axis(x[0, k], far, origin[0], inverse[0], n[0], grids.periods[0])
-        first1, last1 = along_axis(x[1, k], far, origin[1], inverse[1], n[1], grids.periods[1])
-        first2, last2 = along_axis(x[2, k], far, origin[2], inverse[2], n[2], grids.periods[2])
-        inside_line = first2 >= 0 and last2 < n[2]
+def candidates(grids, low, high, reach, ranges):
+    """Ranges of particles in cells around a box, into the rows of ``ranges`` (most, 2); these, with more room
+    where that is needed, how many there are, and how many particles they hold at the most."""
+    many, held = 0, 0
+    for level in range(len(grids.reach)):
+        n, per = grids.counts[level], grids.inverse[level]
+        far = max(reach, grids.reach[level]) * WIDER
+        first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0])
+        place = grids.base[level]
         for c0 in range(first0, last0 + 1):
+            left2 = far * far - gap(low[0], high[0], c0, per[0], n0) ** 2
+            first1, last1, n1 = along_axis(low[1], high[1], np.sqrt(max(left2, 0.0)), per[1], n[1])
             for c1 in range(first1, last1 + 1):
-                line = grids.base[level] + ((c0 % n[0]) * n[1] + c1 % n[1]) * n[2]
-                # Cells of a line lie side by side: one range, unless it goes round.
-                for c2 in range(first2, first2 + 1 if inside_line else last2 + 1):
-                    low = line + (c2 if inside_line else c2 % n[2])
-                    begin, stop = grids.starts[low], grids.starts[(line + last2 if inside_line else low) + 1]
-                    if end + stop - begin > len(entries):
-                        longer = np.empty(2 * len(entries) + stop - begin, np.uint32)
-                        longer[:end] = entries[:end]
-                        entries = longer
-                    for m in range(begin, stop):
-                        if is_near(k, m, places, grids) and grids.members[m] != k:
-                            entries[end] = grids.members[m]
-                            end += 1
-    return entries, end
+                rest2 = left2 - gap(low[1], high[1], c1, per[1], n1) ** 2
+                if rest2 < 0.0:
+                    continue
+                first2, last2, _ = along_axis(low[2], high[2], np.sqrt(rest2), per[2], n[2])
+                line = ((around(c0, n[0]) + FARTHEST) << 2 * BITS) + ((around(c1, n[1]) + FARTHEST) << BITS)
+                c2 = first2
+                while c2 <= last2:
+                    # Where the line goes round there is a second range, from its other end on.
+                    here = around(c2, n[2])
+                    stop = min(last2 - c2, n[2] - 1 - here) if n[2] > 0 else last2 - c2
+                    key = line + here + FARTHEST
+                    place, close = within(grids, level, place, key, key + stop)
+                    if many == len(ranges):
+                        more = np.empty((2 * many, 2), np.int64)
+                        more[:many] = ranges
+                        ranges = more
+                    ranges[many, 0], ranges[many, 1] = grids.starts[place], grids.starts[close]
+                    many += close > place
+                    held += grids.starts[close] - grids.starts[place] + LANES
+                    place = close
+                    c2 += stop + 1
+    return ranges, many, held
 
 
-@elementwise
-def fill_levels(first, last, low, places, grids, lanes, lengths):
-    """Rows of the columns ``first`` to ``last``, one after the other, and their ``lengths``."""
-    entries, end = np.empty(SOME * (last - first + 1), np.uint32), 0
-    for k in range(first, last):
-        begin = end
-        entries, end = look_around(k, places, grids, entries, begin)
-        entries[begin:end].sort()
-        lengths[k - low] = end - begin
-        filled = begin + (end - begin + lanes - 1) // lanes * lanes
-        if filled > len(entries):
-            longer = np.empty(filled + len(entries), np.uint32)
-            longer[:end] = entries[:end]
-            entries = longer
-        entries[end:filled] = k
-        end = filled
-    return entries[:end]
+@inside
+def within(grids, level, place, first, last):
+    """The cells of a level from key ``first`` to ``last``: from which on, and before which; they are sought
+    from the cell ``place`` on, unless they come before."""
+    begin, end = grids.base[level], grids.base[level + 1]
+    if place > begin and grids.keys[place - 1] >= first:
+        place = begin
+    found = lower_bound(grids.keys, place, end, first)
+    close = found
+    while close < end and grids.keys[close] <= last:
+        close += 1
+    return found, close
+
+
+def near_bits(x_i, within2_i, grids, m):
+    """Bit t says whether particle ``m + t`` of the grids lies within its reach of ``x_i``, or within that of
+    this one, whose square is ``within2_i``."""
+    x_ij = nearest_image(subtract(x_i, at(grids.position, m)), grids.periods)
+    return int(dot(x_ij, x_ij) <= max(within2_i, grids.within2[m]))
+
+
+@overload(near_bits)
+def _typed_near_bits(x_i, within2_i, grids, m):
+    def compare(x_i, within2_i, grids, m):
+        x_ij = nearest_image(subtract(x_i, consecutive_each(grids.position, m)), grids.periods)
+        return bits(dot(x_ij, x_ij) <= max(consecutive(grids.within2, m), within2_i))
+
+    return compare
+
+
+@inside
+def append_row(entries, end, m, grids, ranges, many):
+    """Write the columns of the neighbours of particle ``m`` of the grids behind ``end``; returns the new
+    end."""
+    x_i, within2_i, first, one = at(grids.position, m), grids.within2[m], end, np.uint64(1)
+    for r in range(many):
+        stop = np.uint64(ranges[r, 1])
+        for n in range(np.uint64(ranges[r, 0]), stop, width_of(grids.within2)):
+            others = (one << min(np.uint64(LANES), stop - n)) - one
+            others &= ~(np.uint64(m - n < np.uint64(LANES)) << (m - n) % np.uint64(LANES))
+            end = append_near(entries, end, n, near_bits(x_i, within2_i, grids, n) & others)
+    for entry in range(first, end):
+        entries[entry] = grids.columns[entries[entry]]
+    return end
+
+
+@compiled
+def fill_levels(first, last, grids, rows, room):
+    """Fill the rows of those particles in the cells ``first`` to ``last`` that a rank owns; returns 0, or
+    about how many entries are needed for all.
+
+    Cells take the part of the ``room`` that is their part of the particles.
+    """
+    starts, entries, one = grids.starts, room.lists, np.uint64(1)
+    each = len(entries) / starts[len(starts) - 1]
+    begun, capacity = np.int64(each * starts[first]), np.int64(each * starts[last])
+    end, level, ranges = np.uint64(begun), 0, np.empty((64, 2), np.int64)
+    for cell in range(first, last):
+        while cell >= grids.base[level + 1]:
+            level += 1
+        # The particles of a cell have the same candidates.
+        low, high, reach = extent(grids, starts[cell], starts[cell + 1])
+        ranges, many, held = candidates(grids, low, high, reach, ranges)
+        for m in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
+            k = np.int64(grids.columns[m])
+            row = k - rows.low
+            if not 0 <= row < rows.owned:
+                continue
+            if np.int64(end) + held + rows.multiple > capacity:
+                done = np.int64(m) - starts[first] + 1
+                guess = (np.int64(end) - begun + held) * starts[len(starts) - 1] // done
+                return max(guess, len(entries)) + held + rows.multiple
+            begin, end = end, append_row(entries, end, m, grids, ranges, many)
+            room.begin[row], room.lengths[row] = begin, end - begin
+            while (end - begin) % np.uint64(rows.multiple) != np.uint64(0):
+                entries[end] = k
+                end += one
+    return np.int64(0)

@@ -16,8 +16,8 @@ class TooLarge(Failed):
 
 
 class Sizes(NamedTuple):
-    """Where sizes differ: the kernel's ``support`` over h, the ``skin`` in m, and the names of the fields
-    that hold h, the ``length``, and that of when lists were made, ``listed``."""
+    """Where sizes differ: the kernel's ``support`` over h, the ``skin`` as a part of it, and the names of the
+    fields that hold h, the ``length``, and that of when lists were made, ``listed``."""
 
     support: float
     skin: float
@@ -26,12 +26,16 @@ class Sizes(NamedTuple):
 
     def reach(self, length):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""
-        return GROWTH * self.support * length
+        return (GROWTH + self.skin) * self.support * length
+
+    def stray(self, length):
+        """Distance, m, by which a particle may stray that was listed with this smoothing ``length``."""
+        return 0.5 * self.skin * self.support * length
 
     def cutoff(self, longest: float, periods) -> float:
         """How far lists reach, m, by the ``longest`` smoothing length of all; raises TooLarge where that does
         not fit into the ``periods`` of the domain, m or None."""
-        found = self.reach(longest) + self.skin
+        found = self.reach(longest)
         for axis, period in zip("xyz", periods):
             if period is not None and CUTOFFS_A_PERIOD * found > period:
                 raise TooLarge(

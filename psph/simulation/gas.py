@@ -13,7 +13,7 @@ from psph.particles.sizes import GROWTH
 from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
 from psph.simulation.gas_shares import find_shares, shares_of
-from psph.simulation.lengths import NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state
+from psph.simulation.lengths import AXES, NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state, table_of
 
 TINY = np.finfo(float).tiny
 
@@ -72,7 +72,8 @@ class Gases(Work):
         self._least = least
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
-        self._asked = Numbers(target, kernel, kernel.support, GROWTH, tuple(scene.layout.periods))
+        periods = (*scene.layout.periods, *(None,) * (AXES - scene.dimensions))
+        self._asked = Numbers(scene.dimensions, target, kernel, kernel.support, GROWTH, periods)
 
     def fit(self) -> bool:
         """Find smoothing lengths and densities; whether lists reach far enough for that.  Collective.
@@ -81,8 +82,6 @@ class Gases(Work):
         """
         store = self._store
         came = np.zeros(store.total, np.uint8)
-        mass = store.value("mass")
-        mass = mass if isinstance(mass, np.ndarray) else np.full(store.total, mass)
         found = Lengths(
             store[LENGTH.name], store["density"], store["specific_volume"], store[UNEQUAL.name], came
         )
@@ -91,8 +90,7 @@ class Gases(Work):
             store.low,
             self._asked,
             self._domain.lists,
-            store["position"],
-            mass,
+            table_of(store["position"], store.value("mass"), store.total),
             store[LISTED_LENGTH.name],
             found,
         )
@@ -174,6 +172,12 @@ class Gases(Work):
     def _worst(self, holds: np.ndarray) -> float:
         """One more than the largest number of a particle of which something ``holds`` (owned,), or 0."""
         return float(1 + self._store.id[self._store.inner][holds].max(initial=-1))
+
+
+def check_lists(simulation) -> None:
+    """Whether lists reach far enough for where the step has taken particles."""
+    with simulation.ledger("skin"):
+        simulation.listed = simulation.neighbourhood.skin.reach()
 
 
 def find_sizes(simulation) -> None:

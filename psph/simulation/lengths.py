@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import compiled, elementwise, inside
+from psph.engine.jit import compiled, elementwise, inside, overload
+from psph.engine.simd import EIGHT, consecutive, put_consecutive, spread, total, turning, width_of
 from psph.smoothing import slope, weight
-from psph.vectors import at, dot, nearest_image, subtract
+from psph.vectors import dot, nearest_image, subtract
 
 CLOSE = 1e-6
 """Relative change of h by which it is found."""
@@ -22,14 +23,21 @@ MOST_CHANGE = 0.2
 MOST_TURNS = 100
 """Turns after which there is no solution: of Newton's method three to five are usual."""
 
+BEYOND = 64.0
+"""Distance over h that lanes behind the last neighbour get: beyond the support of every kernel."""
+
+AXES, NUMBERS = 3, 4
+"""Of a particle in a table: its place, with zeros along axes that there are not, and its mass."""
+
 FOUND, OUTGROWN, NONE = 0, 1, 2
 """What came of it: h is found; it is larger than lists reach; there is none."""
 
 
 class Numbers(NamedTuple):
-    """What is asked: ``target`` η^d, a ``kernel`` with h = 1 m and its ``support``, how far h may exceed that
-    of the lists, ``growth``, and the ``periods``, m."""
+    """What is asked in so many ``dimensions``: ``target`` η^d, a ``kernel`` with h = 1 m and its ``support``,
+    how far h may exceed that of the lists, ``growth``, and the ``periods`` (3,), m or None."""
 
+    dimensions: int
     target: float
     kernel: object
     support: float
@@ -47,54 +55,101 @@ class Lengths(NamedTuple):
     came: object
 
 
+class Distances(NamedTuple):
+    """To the neighbours of a particle: ``distance``, m, and ``mass``, kg; both go on for a register."""
+
+    distance: object
+    mass: object
+
+
 @inside
-def gather(k, row, farthest, periods, lists, position, mass, near):
-    """Distance, m, and mass, kg, of the neighbours of ``k`` within ``farthest`` m, into the rows of ``near``
-    (2, most); how many there are."""
-    many = 0
-    for entry in range(lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])):
-        j = np.uint64(lists.lists[entry])
-        x = nearest_image(subtract(at(position, k), at(position, j)), periods)
-        r2 = dot(x, x)
-        if r2 < farthest * farthest:
-            near[0, many], near[1, many] = np.sqrt(r2), mass[j]
-            many += 1
+def gather(k, row, beyond, periods, lists, table, near):
+    """Write distances and masses of all that the ``row`` of the column ``k`` names to ``near``, and behind
+    them lanes ``beyond`` m away; how many there are."""
+    many, begin = np.uint64(lists.lengths[row]), lists.begin[row]
+    place = table[k, 0], table[k, 1], table[k, 2]
+    for n in range(np.uint64(0), many, width_of(table)):
+        x, y, z, m = fetched(table, lists.lists, begin + n)
+        x_ij = nearest_image(subtract(place, (x, y, z)), periods)
+        put_consecutive(near.distance, n, np.sqrt(dot(x_ij, x_ij)))
+        put_consecutive(near.mass, n, m)
+    for n in range(many, many + np.uint64(EIGHT)):
+        near.distance[n] = beyond
     return many
 
 
+def fetched(table, lists, entry):
+    """The numbers of the particles ``lists[entry]`` and following, as lanes."""
+    return tuple(table[lists[entry]])
+
+
+@overload(fetched)
+def _typed_fetched(table, lists, entry):
+    turn = turning(NUMBERS)
+    return lambda table, lists, entry: turn(table, lists, entry)
+
+
+class KernelSums(NamedTuple):
+    """Sums over the neighbours of a particle, in units of h^d: the ``number`` n, and how it rises with
+    ln h, ``growing``; the same of masses, ``rho`` and ``rising``, kg."""
+
+    number: object
+    growing: object
+    rho: object
+    rising: object
+
+
 @inside
-def count(h, kernel, near, many):
-    """n h^d of a particle with the smoothing length ``h``, and by how much it grows with ln h."""
-    inverse, number, growing = 1.0 / h, weight(kernel, 0.0), 0.0
-    for n in range(many):
-        s = near[0, n] * inverse
-        number += weight(kernel, s)
-        growing -= s * slope(kernel, s)
-    return number, growing
+def shares_with(h, kernel, near, many):
+    """Sums over the neighbours alone, with the smoothing length ``h``."""
+    inverse = 1.0 / h
+    number = growing = rho = rising = spread(0.0, near.distance)
+    for n in range(np.uint64(0), many, width_of(near.distance)):
+        s, m = consecutive(near.distance, n) * inverse, consecutive(near.mass, n)
+        w, falls = weight(kernel, s), s * slope(kernel, s)
+        number, growing = number + w, growing - falls
+        rho, rising = rho + m * w, rising - m * falls
+    return KernelSums(total(number), total(growing), total(rho), total(rising))
+
+
+def table_of(position, mass, columns: int) -> np.ndarray:
+    """Places, m, and masses, kg, of so many columns side by side (columns, 4)."""
+    table = np.zeros((columns, NUMBERS))
+    for d, x in enumerate(position):
+        table[:, d] = x[:columns]
+    table[:, AXES] = mass if np.ndim(mass) == 0 else mass[:columns]
+    return table
+
+
+@inside
+def room_for(near, most):
+    """``near``, or longer ones, for ``most`` neighbours."""
+    if most + EIGHT <= len(near.distance):
+        return near
+    return Distances(np.zeros(2 * most + EIGHT), np.zeros(2 * most + EIGHT))
 
 
 @compiled
-def find_lengths(first, last, low, asked, lists, position, mass, listed, found):
+def find_lengths(first, last, low, asked, lists, table, listed, found):
     """Find h, ρ and q of the particles in columns ``first`` to ``last`` from their last h.
 
-    ``mass`` (columns,), kg, ``listed`` (columns,) the h of the lists, m.  Where all neighbours stand in one
-    place with a particle, any h would do, and it stays.  Sums are over a row alone, in its order: the same
-    wherever a slab begins.
+    ``table`` (columns, 4) has places, m, and masses, kg; ``listed`` (columns,) are the h of the lists, m.
+    Where all neighbours stand in one place with a particle, any h would do, and it stays.  Sums are over a
+    row alone, in its order: the same wherever a slab begins.
     """
-    d, kernel, near = len(position), asked.kernel, np.empty((2, 0))
+    d, kernel, near = asked.dimensions, asked.kernel, Distances(np.zeros(EIGHT), np.zeros(EIGHT))
+    alone = weight(kernel, 0.0)
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
-        if lists.lengths[row] > near.shape[1]:
-            near = np.empty((2, 2 * np.int64(lists.lengths[row])))
+        near = room_for(near, np.int64(lists.lengths[row]))
         most = asked.growth * listed[k]
-        many = gather(k, row, asked.support * most, asked.periods, lists, position, mass, near)
+        many = gather(k, row, BEYOND * most, asked.periods, lists, table, near)
         h, smallest, largest, came = min(found.length[k], most), 0.0, np.inf, NONE
-        growing = 0.0
+        sums = shares_with(h, kernel, near, many)
         for _ in range(MOST_TURNS):
-            number, growing = count(h, kernel, near, many)
-            lacks = asked.target - number
-            if growing > 0.0:
-                change = min(max(lacks / growing, -MOST_CHANGE), MOST_CHANGE)
+            lacks = asked.target - alone - sums.number
+            if sums.growing > 0.0:
+                change = min(max(lacks / sums.growing, -MOST_CHANGE), MOST_CHANGE)
             else:
                 change = MOST_CHANGE if lacks > 0.0 else 0.0
             if abs(change) < CLOSE:
@@ -111,17 +166,13 @@ def find_lengths(first, last, low, asked, lists, position, mass, listed, found):
             if not smallest < wanted < largest:
                 wanted = 0.5 * (smallest + largest)
             h = min(wanted, most)
+            sums = shares_with(h, kernel, near, many)
         found.length[k], found.came[k] = h, came
         if came == FOUND:
-            inverse = 1.0 / h
-            rho, rising = mass[k] * weight(kernel, 0.0), 0.0
-            for n in range(many):
-                s = near[0, n] * inverse
-                rho += near[1, n] * weight(kernel, s)
-                rising -= near[1, n] * s * slope(kernel, s)
+            rho = table[k, 3] * alone + sums.rho
             # ∂ρ/∂h = (rising − d ρ)/h in these units, and d n Ω = growing
-            found.unequal[k] = (d * rho - rising) / -growing if growing > 0.0 else 0.0
-            rho *= inverse**d
+            found.unequal[k] = (d * rho - sums.rising) / -sums.growing if sums.growing > 0.0 else 0.0
+            rho /= h**d
             found.density[k], found.specific_volume[k] = rho, 1.0 / rho
 
 

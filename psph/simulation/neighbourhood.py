@@ -9,6 +9,7 @@ from psph.fields import APART, WALL
 from psph.kinds import Work
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin, Unlisted
+from psph.parallel.straying import Straying
 from psph.particles.apart import part
 from psph.particles.neighbours import Neighbours, empty
 from psph.particles.planes import bring_back
@@ -38,11 +39,19 @@ class Neighbourhood:
             Travels(plan.ghost_fields, plan.refreshed, _sought(scene, plan), plan.sizes),
             plan.space.lanes if plan.passes else None,
         )
-        self.skin = Skin(self.domain, layout.reach.skin, plan.planes) if plan.passes else Unlisted()
+        self.skin = self._skin(layout.reach.skin)
         self.wetting = [Wetting(one, plan, store, self.domain, layout.reach) for one in plan.marking]
         self._apart = empty(0, 0)
         self._columns: dict[tuple[float, ...], tuple[int, int]] = {}
         self.fit()
+
+    def _skin(self, width: float) -> Skin | Straying | Unlisted:
+        """What tells how long lists hold that look ``width`` m beyond the kernel where sizes are the same."""
+        if not self.plan.passes:
+            return Unlisted()
+        if self.plan.sizes is not None:
+            return Straying(self.domain, self.plan.sizes)
+        return Skin(self.domain, width, self.plan.planes)
 
     def valid(self, dt: float, speed: float, acceleration: float, shift: float) -> bool:
         """Whether the lists hold to the end of a step of ``dt`` s, by the largest speed, m/s, acceleration,

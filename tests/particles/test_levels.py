@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from psph.particles.levels import Slab, list_by_levels
+from psph.particles.neighbours import empty
 from psph.particles.sizes import GROWTH, Sizes, TooLarge
 
-SIZES = Sizes(2.0, 0.003, "smoothing_length", "listed_length")
+SIZES = Sizes(2.0, 0.02, "smoothing_length", "listed_length")
 
 
 def cloud(dimensions, ratio, count=400, seed=5):
@@ -23,7 +24,7 @@ def all_pairs(position, length, periods):
     for x, period in zip(apart, periods):
         if period:
             x -= period * np.rint(x / period)
-    within = np.maximum(length[:, None], length) * GROWTH * SIZES.support + SIZES.skin
+    within = np.maximum(length[:, None], length) * (GROWTH + SIZES.skin) * SIZES.support
     near = (apart**2).sum(axis=0) <= within**2
     np.fill_diagonal(near, False)
     return [np.flatnonzero(row) for row in near]
@@ -37,13 +38,24 @@ def test_lists_have_all_neighbours_and_no_others(dimensions, ratio, periodic):
     position, length = cloud(dimensions, ratio)
     n = position.shape[1]
     periods = (None, *[1.0 if periodic else None] * (dimensions - 1))
-    lists = list_by_levels(tuple(position), length, SIZES, Slab(0, 0.0, 1.0, 0, n, 0, periods), 4)
+    cutoff = SIZES.reach(length.max())
+    slab = Slab(0, 0.0, 1.0, 0, n, 0, periods, (0.0,) * dimensions, cutoff)
+    lists = list_by_levels(empty(0, 0), tuple(position), length, SIZES, slab, 4)
     expected = all_pairs(position, length, periods)
     for k, row in enumerate(expected):
         begin, many = int(lists.begin[k]), int(lists.lengths[k])
-        assert np.array_equal(lists.lists[begin : begin + many], row)
+        assert np.array_equal(np.sort(lists.lists[begin : begin + many]), row)
         assert (lists.lists[begin + many : begin + -(-many // 4) * 4] == k).all()
     assert sum(map(len, expected)) > n // 2
+
+
+def test_a_cell_ends_with_its_level():
+    """The first cell of the finer level has a number by one lower than the last of the coarser."""
+    length = np.array([1.0, 0.5]) / SIZES.reach(1.0)
+    slab = Slab(0, 0.0, 2.0, 0, 2, 0, (None,), (0.0,), 1.0)
+    lists = list_by_levels(empty(0, 0), (np.array([1.1, 0.3]),), length, SIZES, slab, 1)
+    assert [lists.lists[int(begin)] for begin in lists.begin[:2]] == [1, 0]
+    assert lists.lengths[:2].tolist() == [1, 1]
 
 
 @pytest.mark.parametrize("dimensions", [1, 2, 3])
@@ -55,8 +67,8 @@ def test_ghosts_across_a_seam_are_seen_once(dimensions):
     below, above = (np.flatnonzero(side) for side in (position[0] > 1.0 - cutoff, position[0] < cutoff))
     n = position.shape[1]
     owner = np.concatenate([below, np.arange(n), above])
-    slab = Slab(0, 0.0, 1.0, len(below), n, len(above), periods)
-    lists = list_by_levels(tuple(position[:, owner]), length[owner], SIZES, slab, 1)
+    slab = Slab(0, 0.0, 1.0, len(below), n, len(above), periods, (0.0,) * dimensions, cutoff)
+    lists = list_by_levels(empty(0, 0), tuple(position[:, owner]), length[owner], SIZES, slab, 1)
     for k, row in enumerate(all_pairs(position, length, periods)):
         begin, many = int(lists.begin[k]), int(lists.lengths[k])
         assert np.array_equal(np.sort(owner[lists.lists[begin : begin + many]]), row)

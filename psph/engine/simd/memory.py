@@ -33,6 +33,27 @@ def _load(typing, array, first):
     return lanes(array, types.uint64), build
 
 
+def put_consecutive(array, first: int, lanes) -> None:
+    """Write lanes to the entries of an array from ``first`` on."""
+    array[first] = lanes
+
+
+@overload(put_consecutive)
+def _typed_put_consecutive(array, first, lanes):
+    return lambda array, first, lanes: _write(array, first, lanes)
+
+
+@intrinsic
+def _write(typing, array, first, lanes):
+    def build(context, builder, sig, args):
+        data = context.make_array(sig.args[0])(context, builder, args[0]).data
+        place = builder.bitcast(builder.gep(data, [args[1]]), args[2].type.as_pointer())
+        builder.store(args[2], place).align = array.dtype.bitwidth // 8
+        return context.get_dummy_value()
+
+    return types.none(array, types.uint64, lanes), build
+
+
 @intrinsic
 def bits(typing, mask):
     """A comparison of lanes as the bits of a number, the first lane lowest."""

@@ -1,0 +1,63 @@
+"""How long the lists hold where each particle has its own size: a bound on how far each has strayed."""
+
+import math
+
+import numpy as np
+
+from psph.parallel.domain import Domain
+from psph.parallel.reductions import exact_sums, largest
+from psph.parallel.skin import PART_OF_CUTOFF, PART_OF_PERIOD
+from psph.particles.sizes import Sizes
+
+
+class Straying:
+    """Keeps the lists of ``domain`` until a particle has strayed by half of its skin, a part of its reach.
+
+    Lists reach so far beyond the larger support of a pair that they hold as long as no particle has.  How
+    far each has strayed is measured where it stands at the end of a step, less the way that all matter has
+    gone in the mean: a cloud that drifts as one needs no new lists for it.  No particle is more than
+    ``farthest`` m from where it was listed.  The same on every rank.
+    """
+
+    def __init__(self, domain: Domain, sizes: Sizes):
+        self.domain, self._sizes = domain, sizes
+        self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
+        self._drift, self._since = (0.0,) * domain.store.dimensions, 0.0
+
+    @property
+    def farthest(self) -> float:
+        """Bound on how far a particle is from where it was listed, m."""
+        return min(PART_OF_CUTOFF * self.domain.cutoff, PART_OF_PERIOD * self._shortest)
+
+    def renew(self) -> None:
+        """The lists are new; collective."""
+        store, inner = self.domain.store, self.domain.store.inner
+        terms = [store.shown("mass"), *(store.shown("mass") * v[inner] for v in store["velocity"])]
+        mass, *momentum = exact_sums(self.domain.comm, np.stack(terms, axis=1)).tolist()
+        self._drift, self._since = tuple(p / mass for p in momentum), 0.0
+
+    def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
+        """True: it is measured once particles have moved by the step of ``dt`` s, see :meth:`reach`."""
+        self._since += dt
+        return True
+
+    def reach(self) -> bool:
+        """Whether the lists reach far enough for where particles stand now; collective."""
+        store, inner = self.domain.store, self.domain.store.inner
+        apart2 = strayed2 = np.zeros(store.owned)
+        for x, listed, v in zip(store["position"], store["listed_position"], self._drift):
+            way = x[inner] - listed[inner]
+            apart2, strayed2 = apart2 + way**2, strayed2 + (way - v * self._since) ** 2
+        share2 = strayed2 / self._sizes.stray(store[self._sizes.listed][inner]) ** 2
+        tops = [apart2.max(initial=0.0), share2.max(initial=0.0)]
+        apart2, share2 = largest(self.domain.comm, tops).tolist()
+        # Written so that NaN asks for new lists.
+        return share2 < 1.0 and apart2 < self.farthest**2
+
+    def state(self) -> dict:
+        """What :meth:`reach` rests on beside the particles."""
+        return {"drift": self._drift, "since": self._since}
+
+    def restore(self, state: dict) -> None:
+        """Go on as if the lists had been in use since they were made."""
+        self._drift, self._since = tuple(state["drift"]), state["since"]
