@@ -98,6 +98,7 @@ END = {
     "ends/open_poiseuille": 0.15,
     "ends/open_channel": 0.15,
     "ends/nozzle": 0.12,
+    "ends/retreating_nozzle": 0.12,
     "ends/open_pipe": 0.15,
     "ends/bend": 0.3,
     "ends/cylinder_re20": 0.05,

@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from cases.measures import CASES
 from cases.test_open_ends import PIPE
 from drafts import draft
 from gauging import start
 from scipy.spatial import cKDTree
+
+from psph.case import load
 
 DUCT = """
 space = { dimensions = 2, spacing = 0.1 }
@@ -88,6 +91,20 @@ def test_what_a_piston_displaces_leaves_through_its_hole(tmp_path, pace):
     [state] = simulation.engine.of("ends").states
     left = state.books.number_out - state.books.number_in
     assert left == pytest.approx(pace * 1.0 * 0.6 / 0.05**2, abs=10)
+
+
+@pytest.mark.parametrize("keys, speed", [((), 0.0), (("ends.mouth.on=off",), 1.0)])
+def test_water_from_a_nozzle_that_draws_back_falls_straight_down(keys, speed):
+    """Its speed along the ground is that of the mouth and that beside it, 0.02 m/s at most in the mean.  Control:
+    from a plane that stays it is 1 m/s."""
+    simulation = start(load(f"{CASES}/ends/retreating_nozzle.toml", keys))
+    while simulation.time < 0.5:
+        simulation.step()
+    store, [state] = simulation.store, simulation.engine.of("ends").states
+    x, y = store.shown("position").T
+    falls = (store.shown("kind") == 0) & (y > 0.3) & (x > 1.8 - simulation.time)
+    assert store.shown("velocity")[falls, 0].mean() == pytest.approx(speed, abs=0.02 if speed == 0.0 else 0.1)
+    assert state.books.number_in == pytest.approx(0.5 * 0.1 / 0.02**2, rel=0.05)
 
 
 def test_books_are_right_beside_planes_that_go(tmp_path):
