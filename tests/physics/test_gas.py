@@ -189,42 +189,6 @@ def test_a_tube_that_moves_is_the_same_tube():
         assert np.abs(one - other).max() < 1e-6
 
 
-def test_cold_gases_that_meet_are_four_times_as_dense(tmp_path):
-    """Noh (1987): ρ = ((γ + 1)/(γ − 1))^d behind shocks that run back at 1/3; the middle is too hot."""
-    path = tmp_path / "noh.toml"
-    path.write_text("""
-scheme = "gas"
-[space]
-dimensions = 1
-spacing = 0.02
-periodic = ["x"]
-lower = [-2.0]
-upper = [2.0]
-[time]
-end = 0.6
-[ideal_gases.left]
-shape.box = { lower = [-1.0], upper = [0.0] }
-density = 1.0
-pressure = 1e-6
-gamma = 1.6666666666666667
-velocity = [1.0]
-[ideal_gases.right]
-shape.box = { lower = [0.0], upper = [1.0] }
-density = 1.0
-pressure = 1e-6
-gamma = 1.6666666666666667
-velocity = [-1.0]
-""")
-    simulation = start(load(path))
-    while simulation.time < 0.6:
-        simulation.step(0.6)
-    x, rho = of(simulation, "position", "density")
-    behind = (abs(x[:, 0]) > 0.04) & (abs(x[:, 0]) < 0.14)
-    assert rho[behind].mean() == pytest.approx(4.0, rel=0.02)
-    front = abs(x[rho > 2.5, 0]).max()
-    assert front == pytest.approx(0.2, abs=0.02)
-
-
 def test_what_gases_do_not_know_is_refused_in_a_line(tmp_path):
     path = tmp_path / "cloud.toml"
     path.write_text(CLOUD)
