@@ -36,11 +36,11 @@ NAMES = {"position": "Coordinates", "velocity": "Velocities", "mass": "Masses"}
 NAMES |= {"thermal_energy": "InternalEnergy", "id": "ParticleIDs"}
 
 
-def particles(count=400):
-    """Four times as many in one half as in the other, of masses that differ up to threefold."""
+def particles(count=600):
+    """More than twice as many in one half as in the other, of masses that differ up to threefold."""
     random = np.random.default_rng(7)
     x = random.random((count, 2))
-    x[:, 0] = np.where(random.random(count) < 0.8, 0.5 * x[:, 0], 0.5 + 0.5 * x[:, 0])
+    x[:, 0] = np.where(random.random(count) < 0.7, 0.5 * x[:, 0], 0.5 + 0.5 * x[:, 0])
     return {
         "position": x,
         "velocity": 0.3 * random.normal(size=(count, 2)),
@@ -94,7 +94,7 @@ def test_a_file_tells_places_velocities_masses_and_heat_and_nothing_else(tmp_pat
 
 
 def test_rows_in_another_order_are_the_same_particles(tmp_path):
-    fields, shuffled = particles(), np.random.default_rng(1).permutation(400)
+    fields, shuffled = particles(), np.random.default_rng(1).permutation(600)
     first = begun(tmp_path, "one.npz", fields)
     second = begun(tmp_path, "other.npz", {name: values[shuffled] for name, values in fields.items()})
     for simulation in (first, second):
@@ -160,8 +160,8 @@ def without(name):
         ("cloud.npz", changed("velocity", (7, 1), np.nan), "row 8: velocity is nan; give a number"),
         ("cloud.npz", changed("id", 3, particles()["id"][9]), "row 10: its id .* was given before"),
         ("cloud.npz", without("thermal_energy"), "has no thermal energy; add it to the file, or give"),
-        ("cloud.npz", particles() | {"mass": np.ones(7)}, "position has 400 rows and mass 7"),
-        ("cloud.npz", particles() | {"position": np.ones(400)}, r"position has the shape \(400,\); give"),
+        ("cloud.npz", particles() | {"mass": np.ones(7)}, "position has 600 rows and mass 7"),
+        ("cloud.npz", particles() | {"position": np.ones(600)}, r"position has the shape \(600,\); give"),
         ("cloud.npz", {n: v[:0] for n, v in particles().items()}, "has no particle"),
     ],
 )
