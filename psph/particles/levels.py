@@ -64,7 +64,8 @@ class Grids(NamedTuple):
     how far they reach, m².  ``keys`` (cells,) are the cells that hold particles, ``starts`` (cells + 1,) the
     first of each, and ``base`` (levels + 1,) the first cells of levels.  ``inverse`` (levels, 3) is how many
     cells a metre has from the ``origin`` (3,) on; ``counts`` (levels, 3) after how many cells an axis goes
-    round, 0 where it does not; ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.
+    round, 0 where it does not.  ``box`` (levels, 2, 3) are the lowest and the highest cells of each level
+    along each axis, ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.
     """
 
     columns: np.ndarray
@@ -77,6 +78,7 @@ class Grids(NamedTuple):
     inverse: np.ndarray
     origin: np.ndarray
     counts: np.ndarray
+    box: np.ndarray
     reach: np.ndarray
     periods: tuple
 
@@ -96,8 +98,10 @@ def list_by_levels(room: Neighbours, position, listed, sizes: Sizes, slab: Slab,
     filled up to a multiple of ``lanes`` with the particle itself.  ``room`` is used again where it is large
     enough.
     """
+    if not slab.owned:
+        return empty(0, 0)
     total = slab.low + slab.owned + slab.high
-    grids = _grids([x[:total] for x in position], sizes.reach(listed[:total]), slab)
+    grids = grids_of([x[:total] for x in position], sizes.reach(listed[:total]), slab)
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
@@ -109,7 +113,7 @@ def list_by_levels(room: Neighbours, position, listed, sizes: Sizes, slab: Slab,
         room = room._replace(lists=entries_for(needed + needed // SPARE))
 
 
-def _grids(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
+def grids_of(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
     """The levels of particles at these places."""
     first = AXES - len(position)
     level = np.floor(np.log2(slab.cutoff * WIDER / reach)).astype(np.int64)
@@ -117,6 +121,7 @@ def _grids(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
     counts, inverse = np.zeros((len(levels), AXES), np.int64), np.zeros((len(levels), AXES))
     origin, seen = np.zeros(AXES), np.zeros((AXES, len(reach)))
     key, of = np.zeros(len(reach), np.int64), np.searchsorted(levels, level)
+    box = np.zeros((len(levels), 2, AXES), np.int64)
     for a in range(first):
         key |= FARTHEST << BITS * (AXES - 1 - a)
     for d, (x, period) in enumerate(zip(position, slab.periods)):
@@ -135,7 +140,10 @@ def _grids(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
             cell += beyond * counts[of, a]
             seen[a] += beyond * period
             counts[:, a] = 0  # ghosts stand where they are seen: it does not go round
-        key |= (np.clip(cell, -FARTHEST, FARTHEST) + FARTHEST) << BITS * (AXES - 1 - a)
+        cell = np.clip(cell, -FARTHEST, FARTHEST)
+        box[:, 0, a] = [cell[of == n].min() for n in range(len(levels))]
+        box[:, 1, a] = [cell[of == n].max() for n in range(len(levels))]
+        key |= (cell + FARTHEST) << BITS * (AXES - 1 - a)
     order = np.lexsort((key, of))
     key, of = key[order], of[order]
     starts = np.flatnonzero(np.concatenate([[True], (np.diff(key) != 0) | (np.diff(of) != 0)]))
@@ -150,6 +158,7 @@ def _grids(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
         inverse,
         origin,
         counts,
+        box,
         np.maximum.reduceat(reach[order], np.searchsorted(of, np.arange(len(levels)))),
         tuple(slab.periods),
     )
@@ -234,19 +243,25 @@ def candidates(grids, low, high, reach, ranges):
     where that is needed, how many there are, and how many particles they hold at the most."""
     many, held = 0, 0
     for level in range(len(grids.reach)):
-        n, per = grids.counts[level], grids.inverse[level]
+        n, per, box = grids.counts[level], grids.inverse[level], grids.box[level]
         far = max(reach, grids.reach[level]) * WIDER
         first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0])
         place = grids.base[level]
         for c0 in range(first0, last0 + 1):
+            row0 = around(c0, n[0])
+            if not box[0, 0] <= row0 <= box[1, 0]:
+                continue
             left2 = far * far - gap(low[0], high[0], c0, per[0], n0) ** 2
             first1, last1, n1 = along_axis(low[1], high[1], np.sqrt(max(left2, 0.0)), per[1], n[1])
             for c1 in range(first1, last1 + 1):
+                row1 = around(c1, n[1])
+                if not box[0, 1] <= row1 <= box[1, 1]:
+                    continue
                 rest2 = left2 - gap(low[1], high[1], c1, per[1], n1) ** 2
                 if rest2 < 0.0:
                     continue
                 first2, last2, _ = along_axis(low[2], high[2], np.sqrt(rest2), per[2], n[2])
-                line = ((around(c0, n[0]) + FARTHEST) << 2 * BITS) + ((around(c1, n[1]) + FARTHEST) << BITS)
+                line = ((row0 + FARTHEST) << 2 * BITS) + ((row1 + FARTHEST) << BITS)
                 c2 = first2
                 while c2 <= last2:
                     # Where the line goes round there is a second range, from its other end on.

@@ -1,0 +1,128 @@
+"""Particles in nests of ever finer squares or cubes: what a search by levels of cells costs, and a k-d tree.
+
+``python -m psph.lab.bench.uneven`` prints a table.  Times are those of this process's processor, so that they
+mean something on a machine that others use.
+"""
+
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from psph.engine.jit import compiled
+from psph.particles import levels
+from psph.particles.neighbours import empty
+from psph.particles.sizes import GROWTH, Sizes
+
+SIZES = Sizes(2.0, 0.15, "smoothing_length", "listed_length")
+"""As ideal gases have them."""
+
+SMOOTHING = 1.4
+"""h over spacing, of ideal gases too."""
+
+SIDE = {2: 96, 3: 24}
+"""Particles along an edge of a nest."""
+
+RATIOS = (1, 2, 10, 100)
+"""The largest over the smallest size."""
+
+REPEATS = 5
+"""Searches of which the quickest counts."""
+
+
+class Cost(NamedTuple):
+    """What a search takes: ``candidates`` for each entry of a list, and nanoseconds an entry of ``levels``
+    and of the ``tree``, which looks as far as a particle reaches itself."""
+
+    candidates: float
+    levels: float
+    tree: float
+
+
+def nests(dimensions: int, ratio: float, side: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Places (dim, n), m, and spacings (n,), m: in the middle half of a box of 1 m is one twice as fine, and
+    so on up to the ``ratio``, the last as fine as that asks for; in disorder."""
+    rng = np.random.default_rng(seed)
+    places, spacings, size, left = [], [], 1.0, float(ratio)
+    while True:
+        finer = min(2.0, left)
+        site = (np.arange(side) + 0.5) / side - 0.5
+        x = np.stack(np.meshgrid(*[site] * dimensions, indexing="ij")).reshape(dimensions, -1)
+        if finer > 1.0:
+            x = x[:, np.abs(x).max(axis=0) > 0.5 / finer]
+        places.append(size * (x + rng.uniform(-0.3, 0.3, x.shape) / side))
+        spacings.append(np.full(x.shape[1], size / side))
+        if finer == 1.0:
+            return np.concatenate(places, axis=1), np.concatenate(spacings)
+        size, left = size / finer, left / finer
+
+
+@compiled
+def count_candidates(grids):
+    """How many particles all particles of the grids look at."""
+    count, level, ranges = 0, 0, np.empty((64, 2), np.int64)
+    for cell in range(len(grids.keys)):
+        while cell >= grids.base[level + 1]:
+            level += 1
+        first, last = grids.starts[cell], grids.starts[cell + 1]
+        low, high, reach = levels.extent(grids, first, last)
+        ranges, many, _ = levels.candidates(grids, low, high, reach, ranges)
+        for r in range(many):
+            count += (last - first) * (ranges[r, 1] - ranges[r, 0])
+    return count
+
+
+def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Cost:
+    """That of nests with so many particles along an edge."""
+    x, spacing = nests(dimensions, ratio, side)
+    length, n = SMOOTHING * spacing, x.shape[1]
+    reach = SIZES.reach(length)
+    slab = levels.Slab(0, -0.5, 0.5, 0, n, 0, (None,) * dimensions, (-0.5,) * dimensions, float(reach.max()))
+    rows, room = tuple(x), empty(0, 0)
+
+    def by_levels():
+        nonlocal room
+        room = levels.list_by_levels(room, rows, length, SIZES, slab, 1)
+
+    by_levels()  # compiled, and with room
+    entries = int(room.lengths[:n].sum())
+    tree = quickest(repeats, lambda: cKDTree(x.T).query_ball_point(x.T, reach, return_sorted=False))
+    grids = levels.grids_of(list(rows), reach, slab)
+    return Cost(
+        count_candidates(grids) / entries,
+        quickest(repeats, by_levels) / entries,
+        tree / int((cKDTree(x.T).query_ball_point(x.T, reach, return_length=True) - 1).sum()),
+    )
+
+
+def quickest(repeats: int, work: Callable[[], object]) -> float:
+    """Nanoseconds of this thread, the least of some ``repeats``."""
+    times = []
+    for _ in range(repeats):
+        begun = time.thread_time()
+        work()
+        times.append(time.thread_time() - begun)
+    return 1e9 * min(times)
+
+
+def table(repeats: int = REPEATS) -> str:
+    """All costs as lines of Markdown."""
+    lines = [
+        f"| | {' | '.join(map(str, RATIOS))} |",
+        "|---|" + "---|" * len(RATIOS),
+    ]
+    for dimensions, side in SIDE.items():
+        costs = [cost(dimensions, ratio, side, repeats) for ratio in RATIOS]
+        for name, of in (
+            ("candidates for each entry of a list", [f"{one.candidates:.1f}" for one in costs]),
+            ("levels, ns an entry", [f"{one.levels:.0f}" for one in costs]),
+            ("k-d tree of scipy, ns an entry", [f"{one.tree:.0f}" for one in costs]),
+        ):
+            lines.append(f"| {dimensions}D: {name} | {' | '.join(of)} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(f"lists reach {GROWTH + SIZES.skin:g} times the support\n\n{table()}")
