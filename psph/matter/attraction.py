@@ -1,19 +1,28 @@
 """Self-gravity: what it adds to a scene, whatever the kinds of matter (psph.kinds)."""
 
 from collections.abc import Iterator, Mapping
-from math import pi, sqrt
+from math import log2, pi, sqrt
 from typing import ClassVar
 
 from psph.fields import Field
 from psph.kinds import Kind, Rank, Stage, Work, count_of
 from psph.physics.rigid.body import RigidBody
-from psph.physics.self_gravity import ATTRACTION, ATTRACTION_ENERGY, FINE, WHOLE_ATTRACTION, is_whole
-
-MOST = 20_000
-"""Particles for which a sum over all pairs takes about a second on one core."""
+from psph.physics.self_gravity import (
+    ATTRACTION,
+    ATTRACTION_ENERGY,
+    DIRECT,
+    FINE,
+    MOST,
+    WHOLE_ATTRACTION,
+    is_whole,
+    takes_tree,
+)
 
 PAIR = 2.4e-9
 """Seconds of a pair on a core: by docs/gravity.md."""
+
+BRANCH = 3.5e-7
+"""Seconds that a particle and a doubling of all particles take in a tree on a core: by docs/gravity.md."""
 
 KEY = "physics.self_gravity"
 
@@ -61,46 +70,66 @@ class Attraction(Kind):
 
     def warnings(self) -> Iterator[str]:
         """Too many particles for a sum over all pairs."""
-        if (count := count_of(self.scene)) > MOST:
+        if self._told.method == DIRECT and (count := count_of(self.scene)) > MOST:
             yield (
-                f"{KEY}: {count:,} particles make {count**2:.2g} pairs a step, about "
-                f"{PAIR * count**2:.2g} s on one core; the direct sum is for {MOST:,}: take a larger "
-                "space.spacing, or more ranks"
+                f"{KEY}.method: {count:,} particles make {count**2:.2g} pairs a step, about "
+                f"{PAIR * count**2:.2g} s on one core; the direct sum is for {MOST:,}: take "
+                f'"tree", which takes about {_seconds_of_tree(count):.2g} s'
             )
+
+    @property
+    def _told(self):
+        return self.scene.case.physics.self_gravity
 
     def stages(self) -> Mapping[str, Stage]:
         """The pulls are known before the pass over the neighbours, which adds them to its sums."""
-        return {"sum_over_pairs": Stage(_renew, _renew)}
+        return {"sum_over_pairs": Stage(_renew, _begin)}
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """√(0.05 ε/|a|): what falls past another one sees its pull change within ε."""
         if acceleration > 0.0:
-            softening = self.scene.case.physics.self_gravity.softening
-            yield sqrt(FINE * softening / acceleration), "self-gravity"
+            yield sqrt(FINE * self._told.softening / acceleration), "self-gravity"
 
     def cure(self, limit: str) -> str:
         """A larger softening."""
         return f"{limit} limits the step: take a larger {KEY}.softening" if limit == "self-gravity" else ""
 
     def work(self, rank: Rank) -> Iterator[Work]:
-        """The direct sum."""
-        from psph.simulation.attraction import DirectSum
+        """The sum."""
+        from psph.simulation.attraction import MutualPulls
 
-        yield DirectSum(rank)
+        yield MutualPulls(rank)
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What the sum takes, and how it is softened."""
-        count, told = count_of(self.scene), self.scene.case.physics.self_gravity
+        count, told = count_of(self.scene), self._told
+        if takes_tree(told, count):
+            cost = (
+                f"by a tree, one a step: cells of mass M within b at r count as one where GM b⁴/r⁶ < "
+                f"{told.accuracy:g} |a|, about {_seconds_of_tree(count):.2g} s"
+            )
+        else:
+            cost = (
+                f"by the direct sum, one a step: {count:,} squared = {count**2:.3g} pairs, about "
+                f"{PAIR * count**2:.2g} s"
+            )
         yield (
             "passes",
-            f"Self-gravity by the direct sum, one a step: {count:,} squared = {count**2:.3g} pairs, about "
-            f"{PAIR * count**2:.2g} s on one core; Newton's pull beyond {3 * told.softening:g} m",
+            f"Self-gravity {cost} on one core; Newton's pull beyond {3 * told.softening:g} m",
         )
-        yield "messages", f"  masses      of all particles to each rank, once a step, {48 * count:,} bytes"
+        yield "messages", f"  masses      of all particles to each rank, once a step, {56 * count:,} bytes"
 
     def bytes_of_particle(self, plan) -> float:
-        """Of all masses, twice: as they came, and in order."""
-        return 96.0
+        """Of all masses, twice: as they came, and in order; and of a tree."""
+        return 260.0 if takes_tree(self._told, count_of(self.scene)) else 112.0
+
+
+def _seconds_of_tree(count: int) -> float:
+    return BRANCH * count * log2(count)
+
+
+def _begin(simulation) -> None:
+    simulation.engine.of(Attraction.name).begin_sums(simulation)
 
 
 def _renew(simulation) -> None:

@@ -1,6 +1,6 @@
 """Self-gravity: all that has mass and that forces move attracts all else of that."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import pydantic
 
@@ -24,13 +24,16 @@ STEEPEST = 0.332
 FINE = 0.05
 """Of ε/|a|, under the root, in a time step."""
 
+MOST = 20_000
+"""Particles up to which "auto" takes the direct sum: about a second on one core."""
+
+DIRECT, TREE, AUTO = "direct", "tree", "auto"
+
 FLAT = (
     "needs three dimensions: the mass of a particle in 1D or 2D is one for each m² or m of depth, whose pull"
 )
 FLAT += " falls otherwise with distance; set space.dimensions = 3, or take physics.central_force"
-UNSEEN = (
-    "the mass beyond this plane would pull too, and the direct sum does not have it; draw all of the scene"
-)
+UNSEEN = "the mass beyond this plane would pull too, and the sum does not have it; draw all of the scene"
 BY_WEIGHT = "walls of this condition continue the pressure by the weight alone; take another condition"
 
 
@@ -67,6 +70,34 @@ class SelfGravity(NamedTuple):
             json_schema_extra={"unit": "m"},
         ),
     ]
+    method: Annotated[
+        Literal[AUTO, DIRECT, TREE],
+        pydantic.Field(
+            description="all pairs, or a tree of cells; auto: the tree for more than 20,000 particles"
+        ),
+    ] = AUTO
+    accuracy: Annotated[
+        float,
+        pydantic.Field(
+            gt=0,
+            le=0.1,
+            description="of a tree: cells of mass M and size b at r count as one if GM b⁴/r⁶ < accuracy |a|",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 0.003
+
+    def in_scene(self, scene: Facts):
+        """The form that particles feel."""
+        return MutualPull(self.constant, self.softening)
+
+
+class MutualPull(NamedTuple):
+    """All that moves attracts all else, by its mass: :class:`SelfGravity` as particles feel it."""
+
+    acts = MATTER
+
+    constant: float
+    softening: float
 
     def body(self, i):
         """The pull, m/s², summed before the pass over the neighbours (psph.simulation.attraction)."""
@@ -92,18 +123,35 @@ class WholeAttraction(NamedTuple):
 
     constant: float
     softening: float
+    method: str = AUTO
+    accuracy: float = 0.0
 
     def in_scene(self, scene: Facts):
-        """Itself, where something moves so."""
-        return self if any(is_whole(one.motion) for one in scene.species) else None
+        """The form that particles feel, where something moves so."""
+        some = any(is_whole(one.motion) for one in scene.species)
+        return WholePull(self.constant, self.softening) if some else None
 
     def why_absent(self, scene: Facts):
         """Why it is not there."""
         return "nothing moves as a whole"
 
+
+class WholePull(NamedTuple):
+    """All that moves as a whole attracts all else: :class:`WholeAttraction` as particles feel it."""
+
+    acts = MATTER
+
+    constant: float
+    softening: float
+
     def body(self, i):
         """The pull, m/s²."""
         return i.whole_attraction
+
+
+def takes_tree(told, count: int) -> bool:
+    """Whether a scene of so many particles has a tree, by the table of a case."""
+    return told.method == TREE or (told.method == AUTO and count > MOST)
 
 
 def is_whole(motion) -> bool:

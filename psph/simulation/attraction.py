@@ -1,17 +1,10 @@
-"""Self-gravity by the direct sum: every pair once from each side, in the order of the particles' numbers.
-
-Each rank has all masses, in the same order, and sums those that pull its own particles: so these get the same
-bits on any number of ranks, and the two of a pair opposite forces up to the rounding of a product.
-"""
-
-from typing import Any, NamedTuple
+"""Self-gravity on a rank: all masses of the scene on every rank, in the order of the particles' numbers,
+and the pulls on its own particles by the direct sum or by a tree (psph.simulation.direct_sum,
+psph.simulation.tree_sum)."""
 
 import numpy as np
 
-from psph.engine.jit import compiled
-from psph.engine.settled import settled
-from psph.engine.simd import EIGHT, consecutive, spread, total, width_of
-from psph.kinds import Rank, Work
+from psph.kinds import Rank, Work, count_of
 from psph.output.diagnostics import true_mass
 from psph.parallel.reductions import all_rows
 from psph.physics.motion import is_free
@@ -22,28 +15,14 @@ from psph.physics.self_gravity import (
     WHOLE_ATTRACTION,
     has_own_steps,
     is_whole,
-    softened,
+    takes_tree,
 )
-from psph.vectors import add, at, dot, put, scale, subtract
-
-ID, PLACE, MASS, WHOLE, WIDTH = 0, slice(1, 4), 4, 5, 6
-"""Of the rows that ranks exchange: the particle's number, where it is, its mass, and 1 where it moves as
-a whole, else 0."""
+from psph.simulation.direct_sum import DirectSum
+from psph.simulation.masses import ID, MASS, OLD, PLACE, WHOLE, WIDTH, Pulled
+from psph.simulation.tree_sum import TreeSum
 
 
-class Masses(NamedTuple):
-    """What pulls, in the order of the particles' numbers: three arrays of ``places``, m, and ``mass``, kg.
-
-    Filled up to whole registers with what has no mass; ``factor`` is G, ``reach`` H in m.
-    """
-
-    places: Any
-    mass: Any
-    factor: float
-    reach: float
-
-
-class DirectSum(Work):
+class MutualPulls(Work):
     """The pulls on the particles of a rank, by all of the scene."""
 
     name = "attraction"
@@ -56,32 +35,34 @@ class DirectSum(Work):
         self._whole = groups.where(lambda one: is_whole(one.motion))
         self._ahead = groups.where(lambda one: has_own_steps(one.motion))
         self._attracted = self._whole | self._ahead | groups.where(lambda one: is_free(one.motion))
-        self._attract, self._held = settled(attract), 0
+        tree = takes_tree(told, count_of(rank.scene))
+        self.sum = (
+            TreeSum(self._factor, self._reach, float(told.accuracy))
+            if tree
+            else DirectSum(self._factor, self._reach)
+        )
+        self._held = 0
+
+    def begin_sums(self, simulation) -> None:
+        """The pulls at the start; twice where the sum rests on those of the step before.  Collective."""
+        for _ in range(self.sum.turns_at_start):
+            self.renew(simulation)
 
     def renew(self, simulation) -> None:
         """Both pulls where all particles stand at the end of a step; collective."""
-        store, each = self.store, simulation.engine.each
+        store = self.store
         with self.ledger("self-gravity"):
             own, mass = self._own(simulation.engine.kinds)
             rows = all_rows(self.comm, own)
             rows = rows[np.argsort(rows[:, ID])]
-            self._held = 2 * rows.nbytes
-            due = self._attracted.astype(np.uint8), store.group, store["position"]
             ahead = store.low + np.flatnonzero(self._ahead[store.shown("group")])
             before, energy = self._pull(ahead), store[ATTRACTION_ENERGY.name]
-            parts = self._masses(rows[rows[:, WHOLE] == 0.0])
-            each(self._attract, parts, *due, store[ATTRACTION.name], energy)
+            columns = store.low + np.flatnonzero(self._attracted[store.shown("group")])
+            whole = store[WHOLE_ATTRACTION.name] if WHOLE_ATTRACTION.name in store else None
+            pulled = Pulled(columns, own[:, ID], store["position"], store[ATTRACTION.name], whole, energy)
+            self._held = 2 * rows.nbytes + self.sum.renew(rows, pulled)
             energy[store.inner] += 0.5 * self._factor * REACH / self._reach * mass  # that with itself
-            if WHOLE_ATTRACTION.name in store:
-                wholes = self._masses(rows[rows[:, WHOLE] == 1.0])
-                each(self._attract, wholes, *due, store[WHOLE_ATTRACTION.name], np.zeros(store.total))
             self._catch_up(simulation.dt, ahead, self._pull(ahead) - before)
-
-    def _masses(self, rows: np.ndarray) -> Masses:
-        count = -(-len(rows) // EIGHT) * EIGHT
-        table = np.zeros((4, count))
-        table[:3, : len(rows)], table[3, : len(rows)] = rows[:, PLACE].T, rows[:, MASS]
-        return Masses(tuple(table[:3]), table[3], self._factor, self._reach)
 
     def _own(self, kinds) -> tuple[np.ndarray, np.ndarray]:
         """The rows of this rank's particles that attract (n, WIDTH), and of all of its particles the mass
@@ -94,6 +75,7 @@ class DirectSum(Work):
         rows = np.empty((int(which.sum()), WIDTH))
         rows[:, ID], rows[:, MASS] = store.shown("id")[which], mass[which]
         rows[:, PLACE], rows[:, WHOLE] = store.shown("position")[which], self._whole[group[which]]
+        rows[:, OLD] = np.sqrt((self._pull(store.low + np.flatnonzero(which)) ** 2).sum(axis=0))
         return rows, np.where(which & ~self._whole[group], mass, 0.0)
 
     def _pull(self, columns: np.ndarray) -> np.ndarray:
@@ -110,28 +92,5 @@ class DirectSum(Work):
             store.data[np.ix_(store.rows[name], columns)] += share * more
 
     def bytes_held(self) -> int:
-        """Bytes of all masses."""
+        """Bytes of all masses, and of the tree."""
         return self._held
-
-
-@compiled
-def attract(first, last, masses, attracted, group, position, pull, energy):
-    """a = −G Σ_j m_j g x_ij and ½φ = −½G Σ_j m_j f of the columns ``first`` to ``last`` whose ``group`` is
-    ``attracted``, with themselves: a vector of no length, and an energy that is always the same."""
-    begin, end = np.uint64(0), np.uint64(len(masses.mass))
-    for k in range(np.uint64(first), np.uint64(last)):
-        if not attracted[group[k]]:
-            continue
-        x = at(position, k)
-        sums = spread((0.0, 0.0, 0.0), masses.mass)
-        held = spread(0.0, masses.mass)
-        for n in range(begin, end, width_of(masses.mass)):
-            a, b, c = masses.places
-            there = consecutive(a, n), consecutive(b, n), consecutive(c, n)
-            away = subtract(there, x)
-            g, f = softened(np.sqrt(dot(away, away)), masses.reach)
-            m = consecutive(masses.mass, n)
-            sums = add(sums, scale(away, m * g))
-            held = held + m * f
-        put(pull, k, scale(total(sums), masses.factor))
-        energy[k] = -0.5 * masses.factor * total(held)

@@ -7,6 +7,7 @@ import pytest
 from drafts import draft, refusal
 from gauging import start
 
+from psph.kinds import kinds_in
 from psph.physics.self_gravity import softened
 from psph.runs.guards import Guards
 from psph.runs.record import Record
@@ -212,7 +213,18 @@ def test_what_it_does_not_know_is_refused_in_a_line(tmp_path, changes, says):
     assert any(says in line for line in refusal(tmp_path, BALL, *changes))
 
 
-def test_many_particles_are_warned_of_with_the_cost(tmp_path):
-    case = draft(tmp_path, BALL, "fluids.water.shape.ball.radius=1.75")
+def told(case) -> str:
+    """What the run says of the sum."""
+    scene = Scene(case)
+    [kind] = [one for one in kinds_in(scene) if one.name == "attraction"]
+    return " ".join(line for _, line in kind.lines(None, 0.0))
+
+
+def test_many_particles_have_a_tree_or_are_warned_of_with_the_cost(tmp_path):
+    many = "fluids.water.shape.ball.radius=1.75"
+    assert "by a tree" in told(draft(tmp_path, BALL, many))
+    assert "by the direct sum" in told(draft(tmp_path, BALL))
+    assert not [one for one in warnings(Scene(draft(tmp_path, BALL, many))) if "self_gravity" in one]
+    case = draft(tmp_path, BALL, many, "physics.self_gravity.method=direct")
     [line] = [one for one in warnings(Scene(case)) if "self_gravity" in one]
-    assert "about 1.2 s on one core" in line and "take a larger space.spacing" in line
+    assert "about 1.2 s on one core" in line and 'take "tree"' in line and "by the direct sum" in told(case)
