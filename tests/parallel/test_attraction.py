@@ -51,10 +51,7 @@ def rows(simulation):
     """All particles by id."""
     store = simulation.store
     names = "position", "velocity", "density", "attraction", "attraction_energy", "whole_attraction"
-    parts = [
-        store.owned_rows("id")[:, None],
-        *(store.owned_rows(n).T.reshape(-1, store.owned).T for n in names),
-    ]
+    parts = [np.atleast_2d(store.owned_rows(name).T).T for name in ("id", *names)]
     every = np.concatenate(simulation.comm.allgather(np.hstack(parts)))
     return every[np.argsort(every[:, 0])]
 
