@@ -5,11 +5,13 @@ from math import log2, pi, sqrt
 from typing import ClassVar
 
 from psph.fields import Field
-from psph.kinds import Kind, Rank, Stage, Work, count_of
+from psph.kinds import Kind, Rank, Stage, Work, count_of, kinds_in
+from psph.physics.gas.softening import DEEPENING
 from psph.physics.rigid.body import RigidBody
 from psph.physics.self_gravity import (
     ATTRACTION,
     ATTRACTION_ENERGY,
+    BY_SIZE,
     DIRECT,
     FINE,
     MOST,
@@ -17,6 +19,7 @@ from psph.physics.self_gravity import (
     is_whole,
     takes_tree,
 )
+from psph.simulation.gas_deepening import Deepening
 
 PAIR = 2.4e-9
 """Seconds of a pair on a core: by docs/gravity.md."""
@@ -56,7 +59,20 @@ class Attraction(Kind):
     def fields(self) -> tuple[Field, ...]:
         """The pulls, and the energy."""
         whole = any(is_whole(one.motion) for one in self.scene.species)
-        return (ATTRACTION, ATTRACTION_ENERGY, *([WHOLE_ATTRACTION] * whole))
+        return (
+            ATTRACTION,
+            ATTRACTION_ENERGY,
+            *([WHOLE_ATTRACTION] * whole),
+            *([DEEPENING] * self._by_size),
+        )
+
+    def renews(self, passes) -> tuple[str, ...]:
+        """How softening changes, where it goes by size."""
+        return (DEEPENING.name,) * self._by_size
+
+    @property
+    def _by_size(self) -> bool:
+        return self._told.softening == BY_SIZE
 
     @property
     def bears_midway(self) -> bool:
@@ -64,7 +80,9 @@ class Attraction(Kind):
         return True
 
     def faults(self) -> Iterator[str]:
-        """Open ends, beyond which there is more of the fluid."""
+        """Open ends, beyond which there is more of the fluid; sizes where all have one."""
+        if self._by_size and not any(kind.sizes for kind in kinds_in(self.scene)):
+            yield f'{KEY}.softening: "h" goes by the sizes of gases, of which there is none; give a length'
         if self.scene.case.ends:
             yield f"{KEY}: what is beyond an open end would pull too; remove this key, or the ends"
 
@@ -86,8 +104,9 @@ class Attraction(Kind):
         return {"sum_over_pairs": Stage(_renew, _begin)}
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
-        """√(0.05 ε/|a|): what falls past another one sees its pull change within ε."""
-        if acceleration > 0.0:
+        """√(0.05 ε/|a|): what falls past another one sees its pull change within ε; by sizes gases have
+        theirs."""
+        if acceleration > 0.0 and not self._by_size:
             yield sqrt(FINE * self._told.softening / acceleration), "self-gravity"
 
     def cure(self, limit: str) -> str:
@@ -98,7 +117,7 @@ class Attraction(Kind):
         """The sum."""
         from psph.simulation.attraction import MutualPulls
 
-        yield MutualPulls(rank)
+        yield MutualPulls(rank, Deepening(rank, self._told.constant) if self._by_size else None)
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What the sum takes, and how it is softened."""
@@ -113,9 +132,10 @@ class Attraction(Kind):
                 f"by the direct sum, one a step: {count:,} squared = {count**2:.3g} pairs, about "
                 f"{PAIR * count**2:.2g} s"
             )
+        reach = "both supports" if self._by_size else f"{3 * told.softening:g} m"
         yield (
             "passes",
-            f"Self-gravity {cost} on one core; Newton's pull beyond {3 * told.softening:g} m",
+            f"Self-gravity {cost} on one core; Newton's pull beyond {reach}",
         )
         yield "messages", f"  masses      of all particles to each rank, once a step, {56 * count:,} bytes"
 

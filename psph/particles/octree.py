@@ -155,6 +155,16 @@ def split(keys):
 
 
 @elementwise
+def largest_in_cells(tree, values):
+    """The largest of the ``values`` (n,), in the order of the tree, in each cell."""
+    largest = np.zeros(len(tree.first))
+    for cell in range(len(largest)):
+        for k in range(tree.first[cell], tree.last[cell]):
+            largest[cell] = max(largest[cell], values[k])
+    return largest
+
+
+@elementwise
 def find_boxes(places, first, last, skip, parent, lower, upper):
     """The boxes of the particles of all cells."""
     lower[:], upper[:] = np.inf, -np.inf

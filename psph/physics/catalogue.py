@@ -35,6 +35,7 @@ from psph.physics.fluid.viscosity import (
 from psph.physics.gas.heat import GasHeat
 from psph.physics.gas.pressure import GasPressure
 from psph.physics.gas.shocks import FastestSignal, HeatConduction, ShockViscosity
+from psph.physics.gas.softening import SofteningChange
 from psph.physics.gas.switch import FlowOfGas
 from psph.physics.order.potential import LocalPotential
 from psph.physics.order.shifting import ParticleShifting, PositionShift
@@ -161,6 +162,7 @@ CATALOGUE = (
     Entry("physics.central_force", CentralForce),
     Entry("physics.self_gravity", SelfGravity),
     Entry("physics.self_gravity", WholeAttraction),
+    Entry("physics.self_gravity", SofteningChange),
     Entry("physics.damping_zone", DampingZone),
     Entry("physics.other_damping_zone", OtherDampingZone),
     Entry("frame.motion", MovingFrame),

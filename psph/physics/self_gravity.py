@@ -29,6 +29,9 @@ MOST = 20_000
 
 DIRECT, TREE, AUTO = "direct", "tree", "auto"
 
+BY_SIZE = "h"
+"""The softening by the smoothing length of each particle."""
+
 FLAT = (
     "needs three dimensions: the mass of a particle in 1D or 2D is one for each m² or m of depth, whose pull"
 )
@@ -40,11 +43,11 @@ BY_WEIGHT = "walls of this condition continue the pressure by the weight alone; 
 class SelfGravity(NamedTuple):
     """All that moves attracts all else, by its mass.
 
-    a_i = −G Σ_j m_j g(r) x_ij, φ_i = −G Σ_j m_j f(r): the fields of a Wendland C2 kernel of the support
-    H = 3ε, beyond which they are Newton's (:func:`softened`).  Fluids, soils, solids and rigid bodies pull
-    and are pulled; walls, and what else moves as it is told, do neither.  Price & Monaghan (2007), Mon. Not.
-    R. Astron. Soc. 374, 1347.
-    """
+    a_i = −G Σ_j m_j g(r) x_ij, φ_i = −G Σ_j m_j f(r): the fields of a Wendland C2 kernel of the support H =
+    3ε, beyond which they are Newton's (:func:`softened`); by sizes the mean of both fields of a pair, each
+    by its own H (:class:`psph.physics.gas.softening.SofteningChange`).  Fluids, soils, solids and rigid
+    bodies pull and are pulled; walls, and what else moves as it is told, do neither.  Price & Monaghan
+    (2007), Mon. Not. R. Astron. Soc. 374, 1347."""
 
     acts = MATTER
     refuses = {
@@ -63,10 +66,10 @@ class SelfGravity(NamedTuple):
         ),
     ]
     softening: Annotated[
-        float,
+        Annotated[float, pydantic.Field(gt=0)] | Literal[BY_SIZE],
         pydantic.Field(
-            gt=0,
-            description="ε: at 0 the potential of a mass m is -Gm/ε, beyond 3ε the pull is Newton's",
+            description="ε: at 0 the potential of a mass m is -Gm/ε, beyond 3ε the pull is Newton's; "
+            '"h", of gases: by the support of each particle',
             json_schema_extra={"unit": "m"},
         ),
     ]
@@ -88,7 +91,7 @@ class SelfGravity(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """The form that particles feel."""
-        return MutualPull(self.constant, self.softening)
+        return MutualPull(self.constant, softening_of(self, scene))
 
 
 class MutualPull(NamedTuple):
@@ -122,14 +125,14 @@ class WholeAttraction(NamedTuple):
     refuses = SelfGravity.refuses
 
     constant: float
-    softening: float
+    softening: float | str
     method: str = AUTO
     accuracy: float = 0.0
 
     def in_scene(self, scene: Facts):
         """The form that particles feel, where something moves so."""
         some = any(is_whole(one.motion) for one in scene.species)
-        return WholePull(self.constant, self.softening) if some else None
+        return WholePull(self.constant, softening_of(self, scene)) if some else None
 
     def why_absent(self, scene: Facts):
         """Why it is not there."""
@@ -147,6 +150,12 @@ class WholePull(NamedTuple):
     def body(self, i):
         """The pull, m/s²."""
         return i.whole_attraction
+
+
+def softening_of(told, scene: Facts) -> float:
+    """ε, m; of gases by size that of the lattice, a third of the support."""
+    by_size = told.softening == BY_SIZE
+    return scene.kernel.support * scene.smoothing_length / REACH if by_size else told.softening
 
 
 def takes_tree(told, count: int) -> bool:
@@ -177,3 +186,19 @@ def softened(r, reach):
     g = 14.0 + u2 * (-84.0 + u * (140.0 + u * (-90.0 + 21.0 * u)))
     f = 3.0 + u2 * (-7.0 + u2 * (21.0 + u * (-28.0 + u * (15.0 - 3.0 * u))))
     return newton * newton * newton * g, newton * f
+
+
+@register_jitable
+def softened_by_both(r, one, other):
+    """g and f of a pair whose kernels reach ``one`` and ``other``, m: the mean of both."""
+    g, f = softened(r, one)
+    g_other, f_other = softened(r, other)
+    return 0.5 * (g + g_other), 0.5 * (f + f_other)
+
+
+@register_jitable
+def growing_depth(u):
+    """−H² ∂f/∂H at r = u H, 1: 3 − 21u² + 105u⁴ − 168u⁵ + 105u⁶ − 24u⁷, 0 from u = 1 on."""
+    u = min(u, 1.0)
+    u2 = u * u
+    return 3.0 + u2 * (-21.0 + u2 * (105.0 + u * (-168.0 + u * (105.0 - 24.0 * u))))

@@ -18,19 +18,22 @@ from psph.physics.self_gravity import (
     takes_tree,
 )
 from psph.simulation.direct_sum import DirectSum
-from psph.simulation.masses import ID, MASS, OLD, PLACE, WHOLE, WIDTH, Pulled
+from psph.simulation.masses import ID, MASS, OLD, PLACE, SIZE, WHOLE, WIDTH, Pulled
 from psph.simulation.tree_sum import TreeSum
 
 
 class MutualPulls(Work):
-    """The pulls on the particles of a rank, by all of the scene."""
+    """The pulls on the particles of a ``rank``, by all of the scene; ``sizes`` says how far each reaches
+    where that differs (psph.simulation.gas_deepening), else it is None."""
 
     name = "attraction"
 
-    def __init__(self, rank: Rank):
+    def __init__(self, rank: Rank, sizes):
         self.store, self.comm, self.ledger = rank.store, rank.domain.comm, rank.ledger
         told = rank.scene.case.physics.self_gravity
-        self._factor, self._reach = float(told.constant), REACH * float(told.softening)
+        self._factor = float(told.constant)
+        self._sizes = sizes
+        self._reach = None if self._sizes else REACH * float(told.softening)
         groups = rank.plan.materials
         self._whole = groups.where(lambda one: is_whole(one.motion))
         self._ahead = groups.where(lambda one: has_own_steps(one.motion))
@@ -61,7 +64,10 @@ class MutualPulls(Work):
             whole = store[WHOLE_ATTRACTION.name] if WHOLE_ATTRACTION.name in store else None
             pulled = Pulled(columns, own[:, ID], store["position"], store[ATTRACTION.name], whole, energy)
             self._held = 2 * rows.nbytes + self.sum.renew(rows, pulled)
-            energy[store.inner] += 0.5 * self._factor * REACH / self._reach * mass  # that with itself
+            reach = self._sizes.reach(store.inner) if self._sizes else self._reach
+            energy[store.inner] += 0.5 * self._factor * REACH / reach * mass  # that with itself
+            if self._sizes:
+                self._sizes.renew()
             self._catch_up(simulation.dt, ahead, self._pull(ahead) - before)
 
     def _own(self, kinds) -> tuple[np.ndarray, np.ndarray]:
@@ -72,10 +78,12 @@ class MutualPulls(Work):
         for kind in kinds:
             kind.weigh(store, mass)
         which = self._attracted[group]
-        rows = np.empty((int(which.sum()), WIDTH))
+        rows = np.empty((int(which.sum()), WIDTH + bool(self._sizes)))
         rows[:, ID], rows[:, MASS] = store.shown("id")[which], mass[which]
         rows[:, PLACE], rows[:, WHOLE] = store.shown("position")[which], self._whole[group[which]]
         rows[:, OLD] = np.sqrt((self._pull(store.low + np.flatnonzero(which)) ** 2).sum(axis=0))
+        if self._sizes:
+            rows[:, SIZE] = self._sizes.reach(store.inner)[which]
         return rows, np.where(which & ~self._whole[group], mass, 0.0)
 
     def _pull(self, columns: np.ndarray) -> np.ndarray:

@@ -4,9 +4,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-ID, PLACE, MASS, WHOLE, OLD, WIDTH = 0, slice(1, 4), 4, 5, 6, 7
+ID, PLACE, MASS, WHOLE, OLD, SIZE, WIDTH = 0, slice(1, 4), 4, 5, 6, 7, 7
 """Of the rows that ranks exchange: the particle's number, where it is, its mass, 1 where it moves as a whole,
-else 0, and the size of its last pull."""
+else 0, the size of its last pull, and, in rows that are wider by one, how far its kernel reaches."""
 
 
 class Pulled(NamedTuple):

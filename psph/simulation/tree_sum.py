@@ -4,7 +4,7 @@ by one.
 Barnes & Hut (1986), Nature 324, 446; which cells are far: Springel, Yoshida & White (2001), New Astron. 6,
 79."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,18 @@ from psph.engine.jit import compiled, inside, register_jitable
 from psph.engine.settled import settled
 from psph.engine.simd import EIGHT, consecutive, spread, total, width_of
 from psph.engine.threads import in_threads
-from psph.particles.octree import PARTS, Moments, Octree, moments, octree
+from psph.particles.octree import PARTS, Moments, Octree, largest_in_cells, moments, octree
 from psph.physics.self_gravity import softened
-from psph.simulation.masses import ID, MASS, OLD, PLACE, WHOLE, Pulled
+from psph.simulation.masses import ID, MASS, OLD, PLACE, SIZE, WHOLE, Pulled
+from psph.simulation.reaching import (
+    Alike,
+    BySize,
+    field_of,
+    is_past_reach,
+    note_reach,
+    own_reach,
+    reach_of_cells,
+)
 from psph.vectors import add, dot, scale, subtract
 
 SOME = 1024
@@ -29,21 +38,22 @@ FIRST = 0.7
 
 
 class Source(NamedTuple):
-    """What pulls: the ``tree``, its ``moments``, G as ``factor``, H as ``reach`` in m, and which cells
-    count as one: those within ``opening`` r at the distance r, where M b⁴/r⁶ < ``allowed`` (n,), kg/m², of
-    all of the particles that are pulled, in the order of the tree; b is how far the cell reaches from its
-    centre."""
+    """What pulls: the ``tree``, its ``moments``, G as ``factor``, H as ``reach``
+    (psph.simulation.reaching), and which cells count as one: those within ``opening`` r at the distance r,
+    where M b⁴/r⁶ < ``allowed`` (n,), kg/m², of all of the particles that are pulled, in the order of the
+    tree; b is how far the cell reaches from its centre."""
 
     tree: Octree
     moments: Moments
     factor: float
-    reach: float
+    reach: Any
     opening: float
     allowed: np.ndarray
 
 
 class TreeSum:
-    """The sum by a tree over all particles, the same on each rank, with G as ``factor``, H as ``reach``, m.
+    """The sum by a tree over all particles, the same on each rank, with G as ``factor``, H as ``reach``, m,
+    None where rows have it.
 
     A cell of mass M within b at the distance r counts as one where GM b⁴/r⁶ < ``accuracy`` |a|, a the pull
     of the step before.  ``pairs`` and ``cells`` are how many pairs of particles, and of particles and
@@ -52,7 +62,7 @@ class TreeSum:
     turns_at_start = 2
     """It rests on the pulls of the step before."""
 
-    def __init__(self, factor: float, reach: float, accuracy: float):
+    def __init__(self, factor: float, reach: float | None, accuracy: float):
         self._factor, self._reach, self._accuracy = factor, reach, accuracy
         self._loop, self.pairs, self.cells = settled(pull_groups), 0, 0
 
@@ -66,9 +76,13 @@ class TreeSum:
         allowed = old * (self._accuracy / self._factor) if known else np.full(len(rows), np.inf)
         opening = FARTHEST if known else FIRST
         self.pairs = self.cells = held = 0
+        reach = Alike(self._reach)
+        if self._reach is None:
+            sizes = np.ascontiguousarray(rows[tree.order, SIZE])
+            reach = BySize(sizes, largest_in_cells(tree, sizes))
         for whole, pull, energy in pulled.parts:
             weights = moments(tree, np.where(rows[:, WHOLE] == whole, rows[:, MASS], 0.0))
-            source = Source(tree, weights, self._factor, self._reach, opening, allowed)
+            source = Source(tree, weights, self._factor, reach, opening, allowed)
             for pairs, cells in in_threads(self._loop, 0, len(tree.groups), source, column, pull, energy):
                 self.pairs, self.cells = self.pairs + pairs, self.cells + cells
             held = sum(one.nbytes for one in (*tree, *weights, column, allowed))
@@ -94,32 +108,31 @@ def longer(lists, room):
     held = lists.shape[1]
     if room + EIGHT <= held:
         return lists
-    more = np.empty((lists.shape[0], 2 * (room + EIGHT)))
+    more = np.ones((lists.shape[0], 2 * (room + EIGHT)))
     more[:, :held] = lists
     return more
 
 
 @inside
-def fill_up(lists, count):
-    """``count`` rounded up to whole registers; what fills them has no mass."""
+def fill_up(lists, count, heavy):
+    """``count`` rounded up to whole registers; what fills them has no mass in the parts from 3 to
+    ``heavy``."""
     full = (count + EIGHT - 1) // EIGHT * EIGHT
     for n in range(count, full):
-        for part in range(3):
-            lists[part, n] = lists[part, 0]
-        for part in range(3, lists.shape[0]):
-            lists[part, n] = 0.0
+        for part in range(lists.shape[0]):
+            lists[part, n] = 0.0 if 3 <= part < heavy else lists[part, 0]
     return full
 
 
 @inside
 def look(group, source, near, far):
-    """Write what the particles of the cell ``group`` see: particles into ``near`` (4, n), cells into ``far``
+    """Write what the particles of the cell ``group`` see: particles into ``near`` (5, n), cells into ``far``
     (PARTS, n).  Returns both, longer where that is needed, and how many of each there are."""
     tree, cells, radius2 = source.tree, source.moments.cells, source.moments.radius2
     mass, places, opening2 = source.moments.mass, tree.places, source.opening * source.opening
-    allowed = np.inf
+    allowed, own = np.inf, 0.0
     for k in range(tree.first[group], tree.last[group]):
-        allowed = min(allowed, source.allowed[k])
+        allowed, own = min(allowed, source.allowed[k]), max(own, own_reach(source.reach, k))
     many, much, cell = 0, 0, 0
     while cell < len(tree.first):
         apart2 = 0.0
@@ -128,7 +141,8 @@ def look(group, source, near, far):
             away = max(tree.lower[a, group] - x, x - tree.upper[a, group], 0.0)
             apart2 += away * away
         b2, counts = radius2[cell], cells[cell, 3] > 0.0
-        if counts and b2 < opening2 * apart2 and cells[cell, 3] * b2 * b2 < allowed * apart2**3:
+        far_away = b2 < opening2 * apart2 and cells[cell, 3] * b2 * b2 < allowed * apart2**3
+        if counts and far_away and is_past_reach(source.reach, cell, own, apart2, b2):
             far = longer(far, much + 1)
             for part in range(PARTS):
                 far[part, much] = cells[cell, part]
@@ -143,6 +157,7 @@ def look(group, source, near, far):
                     for a in range(3):
                         near[a, many] = places[a, k]
                     near[3, many] = mass[k]
+                    note_reach(source.reach, k, near[4], many)
                     many += 1
             cell += 1
         else:
@@ -151,14 +166,14 @@ def look(group, source, near, far):
 
 
 @inside
-def pull_of_particles(x, near, count, reach):
-    """Σ m g x and Σ m f of ``count`` particles at the place ``x``."""
-    a, b, c, m = near
+def pull_of_particles(x, own, near, count, reach):
+    """Σ m g x and Σ m f of ``count`` particles at the place ``x`` of one that reaches ``own``."""
+    a, b, c, m, row = near
     sums, held = spread((0.0, 0.0, 0.0), m), spread(0.0, m)
     for n in range(np.uint64(0), np.uint64(count), width_of(m)):
         there = consecutive(a, n), consecutive(b, n), consecutive(c, n)
         away = subtract(there, x)
-        g, f = softened(np.sqrt(dot(away, away)), reach)
+        g, f = field_of(reach, np.sqrt(dot(away, away)), own, row, n)
         mass = consecutive(m, n)
         sums = add(sums, scale(away, mass * g))
         held = held + mass * f
@@ -199,7 +214,7 @@ def pull_groups(first, last, source, column, pull, energy):
     """a = −G Σ_j m_j g x_ij and ½φ of the particles in the groups ``first`` to ``last`` whose ``column``
     (n,), in the order of the tree, is one of this rank's, else -1.  Returns how many pairs of particles,
     and of particles and cells, that took."""
-    near, far = np.empty((4, SOME)), np.empty((PARTS, SOME))
+    near, far = np.ones((5, SOME)), np.empty((PARTS, SOME))
     pairs, seen = 0, 0
     for number in range(first, last):
         group, due = source.tree.groups[number], 0
@@ -209,13 +224,13 @@ def pull_groups(first, last, source, column, pull, energy):
             continue
         near, far, many, much = look(group, source, near, far)
         pairs, seen = pairs + due * many, seen + due * much
-        many, much = fill_up(near, many), fill_up(far, much)
+        many, much = fill_up(near, many, 4), fill_up(far, much, PARTS)
         for k in range(source.tree.first[group], source.tree.last[group]):
             if column[k] < 0:
                 continue
             x = source.tree.places[0, k], source.tree.places[1, k], source.tree.places[2, k]
-            one, by_one = pull_of_particles(x, near, many, source.reach)
-            other, by_other = pull_of_cells(x, far, much, source.reach)
+            one, by_one = pull_of_particles(x, own_reach(source.reach, k), near, many, source.reach)
+            other, by_other = pull_of_cells(x, far, much, reach_of_cells(source.reach))
             for a in range(3):
                 pull[a][column[k]] = source.factor * (one[a] + other[a])
             energy[column[k]] = -0.5 * source.factor * (by_one + by_other)

@@ -78,6 +78,7 @@ def view(n=2, dim=2, seed=3):
         face_edge=np.resize((0.0, 1.0, 0.0), n),
         unequal=np.resize((0.01, -0.02, 0.03), n),
         sound=np.resize((50.0, 47.0, 62.0), n),
+        softening_change=np.resize((0.2, 0.5, 0.3), n),
         thermal_energy=np.resize((1e3, 2e3, 5e2), n),
     )
 

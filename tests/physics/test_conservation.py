@@ -43,6 +43,7 @@ from psph.physics.fluid.viscosity import (
 from psph.physics.fluid.weight import Steady
 from psph.physics.gas.pressure import GasPressure
 from psph.physics.gas.shocks import KernelViscosity
+from psph.physics.gas.softening import ChangingSoftening
 from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
@@ -103,6 +104,7 @@ def in_a_scene(effect, dim):
         "AtRememberedAngle": lambda: AtRememberedAngle(0.1, 0.3, BLUNT, 1.0, 1e9),
         "GasPressure": lambda: GasPressure(kernel("wendland-c2", 1.0, dim)),
         "ShockViscosity": lambda: KernelViscosity(1.0, 2.0, kernel("wendland-c2", 1.0, dim)),
+        "ChangingSoftening": lambda: ChangingSoftening(kernel("wendland-c2", 1.0, dim)),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()
@@ -162,6 +164,7 @@ def rates(effect, p):
         TensionAmong,
         AtRememberedAngle,
         *IN_VOLUMES,
+        ChangingSoftening,
     ],
 )
 def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
@@ -176,7 +179,8 @@ def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
 
 @pytest.mark.parametrize("dim", (2, 3))
 @pytest.mark.parametrize(
-    "effect", [*claiming(ANGULAR), CentralApparentFriction, VolumePressure, VolumeBackground]
+    "effect",
+    [*claiming(ANGULAR), CentralApparentFriction, VolumePressure, VolumeBackground, ChangingSoftening],
 )
 def test_torques_between_different_particles_sum_up_to_nothing(effect, dim):
     p = crowd(dim)

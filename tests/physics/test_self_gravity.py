@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from psph.physics.self_gravity import FINE, REACH, STEEPEST, softened
+from psph.physics.self_gravity import FINE, REACH, STEEPEST, growing_depth, softened, softened_by_both
 from psph.smoothing import kernel
 
 H = 0.6
@@ -40,6 +40,17 @@ def test_a_mass_has_the_depth_of_its_softening_length():
     r = np.linspace(0.0, 2 * H, 5001)
     steepest = float((r * field(r)[0]).max()) * (H / REACH) ** 2
     assert 0.99 * STEEPEST < steepest < STEEPEST
+
+
+def test_a_pair_of_two_sizes_has_the_mean_of_both_fields_and_a_depth_that_changes_with_them():
+    """∂f/∂H = −D/H²."""
+    r, d = np.linspace(0.0, 1.0, 101), 1e-6
+    slope = [(softened(one, H + d)[1] - softened(one, H - d)[1]) / (2 * d) for one in r]
+    assert [-growing_depth(one / H) / H**2 for one in r] == pytest.approx(slope, abs=1e-6)
+    assert growing_depth(0.0) == 3.0 and growing_depth(1.0) == growing_depth(2.0) == 0.0
+    both = np.array([softened(0.3, H), softened(0.3, 2 * H)])
+    assert softened_by_both(0.3, H, 2 * H) == pytest.approx(both.mean(axis=0), rel=1e-14)
+    assert np.ptp(both, axis=0).min() > 0.1
 
 
 @pytest.mark.parametrize(("softening", "kept"), [(0.1, True), (1e-3, False)])

@@ -1,7 +1,7 @@
 """What a scene does not call for costs nothing: counted for every effect of the catalogue."""
 
 import re
-from typing import NamedTuple, get_origin, get_type_hints
+from typing import Literal, NamedTuple, get_origin, get_type_hints
 
 import numba
 import pytest
@@ -141,7 +141,7 @@ def calling_for(entry) -> list[str]:
         return ["frame.motion={translation=[0.2, 0.2]}"]
     if key.endswith("damping_zone"):
         return [f"{key}={{begin=0.1, end=0.4}}"]
-    hints = get_type_hints(entry.effect)
+    hints = {n: hint for n, hint in get_type_hints(entry.effect).items() if get_origin(hint) is not Literal}
     values = {n: [0.1, 0.1] if get_origin(hint) is tuple else 0.1 for n, hint in hints.items()}
     table = f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
     return [table, *BESIDE.get(key, ())]
@@ -164,8 +164,10 @@ SHORT = ("FreeSurface", "ArtificialViscosity", "PairDamping")
 WET = [one for one in CATALOGUE if not one.key.startswith("anvils.") and one.effect is not SolidContact]
 """Anvils and contact are there for scenes of solids alone: tests/simulation/test_contact.py."""
 OF_GASES = [one for one in CATALOGUE if getattr(one.effect, "acts", ()) == (IDEAL_GASES,)]
-ALONE = [one for one in WET if one not in OF_GASES and one.effect.__name__ != "SmoothFace"]
-"""Without those of ideal gases, which are no fluid, and the one whose normal the rate of a stress reads, and which
+IN_SPACE = [one for one in CATALOGUE if one.key == "physics.self_gravity"]
+ALONE = [one for one in WET if one not in (*OF_GASES, *IN_SPACE) and one.effect.__name__ != "SmoothFace"]
+"""Without those of ideal gases, which are no fluid, those that need three dimensions
+(tests/simulation/test_attraction.py), and the one whose normal the rate of a stress reads, and which
 reads that stress: neither can be alone."""
 
 KEYED, ALL = (long_but_for(SHORT, entries, name_of) for entries in ([e for e in CATALOGUE if e.key], ALONE))

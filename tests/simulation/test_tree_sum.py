@@ -5,6 +5,7 @@ import pytest
 
 from psph.particles import octree as octree_room
 from psph.particles.octree import octree
+from psph.physics.self_gravity import softened_by_both
 from psph.simulation.direct_sum import DirectSum
 from psph.simulation.masses import ID, MASS, OLD, PLACE, WHOLE, WIDTH, Pulled
 from psph.simulation.tree_sum import TreeSum
@@ -30,6 +31,11 @@ def pulls(one, rows, columns=None) -> np.ndarray:
     one.renew(rows, Pulled(columns, rows[columns, ID], places, tuple(found[:3]), both, found[3]))
     found[:3] += whole
     return found
+
+
+def with_sizes(rows, reach) -> np.ndarray:
+    """The rows of particles that ``reach`` (n,) m, each by its size."""
+    return np.hstack([rows, np.asarray(reach)[:, None]])
 
 
 def by_tree(rows, reach, accuracy=ACCURACY, columns=None):
@@ -117,6 +123,22 @@ def test_a_wide_kernel_softens_cells_too():
     assert (
         np.median(errors(pulls(DirectSum(1.0, 0.01), rows), exact)) > 0.1
     )  # the control: Newton's is another
+
+
+def test_particles_of_unlike_sizes_have_the_mean_of_both_fields():
+    """By all pairs as written out; by a tree within its error, where cells are beyond all reach."""
+    rng = np.random.default_rng(5)
+    place, reach = plummer(4000, rng), rng.uniform(0.02, 0.4, 4000)
+    rows = with_sizes(rows_of(place), reach)
+    exact = pulls(DirectSum(1.0, None), rows)
+    assert errors(by_tree(rows, None)[0], exact).max() < 2e-2
+    x, mean = place[7] - place, np.zeros(4)
+    for near, far in zip(x, reach):
+        g, f = softened_by_both(float(np.linalg.norm(near)), reach[7], far)
+        mean -= np.array([*(g * near), 0.5 * f]) / 4000
+    assert exact[:, 7] == pytest.approx(mean, rel=1e-10)
+    alike = pulls(DirectSum(1.0, 0.21), rows)
+    assert np.sqrt((errors(alike, exact) ** 2).mean()) > 0.02  # the control: one reach is another field
 
 
 def test_each_rank_gets_the_bits_of_one():
