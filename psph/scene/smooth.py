@@ -59,9 +59,10 @@ def _before(scene: Scene, alike: Sequence[int], place: np.ndarray) -> SmoothFace
         middle = 0.5 * (inner + outer)
         within = nearest_faces(shapes, start + middle * way).away[:, None] <= 0.0
         inner, outer = np.where(within, middle, inner), np.where(within, outer, middle)
-    aside = np.abs(way).max(initial=0.0) * 0.5**HALVINGS * np.eye(scene.dimensions)
-    faces = [nearest_faces(shapes, start + outer * way + one).normal for one in (*aside, *-aside)]
-    tensor, mean, other = np.zeros((len(place), *aside.shape)), np.zeros_like(place), np.zeros_like(place)
+    # Each way by its own length: what else a rank has is not to count.
+    aside, unit = 0.5**HALVINGS * np.abs(way).max(axis=1, keepdims=True), np.eye(scene.dimensions)
+    faces = [nearest_faces(shapes, start + outer * way + aside * one).normal for one in (*unit, *-unit)]
+    tensor, mean, other = np.zeros((len(place), *unit.shape)), np.zeros_like(place), np.zeros_like(place)
     np.add.at(tensor, rows, sum(n[:, :, None] * n[:, None] for n in faces))
     np.add.at(mean, rows, 0.5 * sum(faces) / len(faces))
     other[rows] = sum(faces) / len(faces)  # of the last way of each

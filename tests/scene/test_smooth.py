@@ -125,3 +125,20 @@ def test_the_end_of_a_period_is_no_face(tmp_path):
     scene = Scene(draft(tmp_path, bed, *extruded))
     found = normals(scene, "floor", [0.5, -0.075, 0.025], [0.5, -0.075, 0.475])
     assert found == pytest.approx(np.tile([0.0, 1.0, 0.0], (2, 1)), abs=1e-12)
+
+
+def test_a_face_is_the_same_whatever_else_a_rank_has(tmp_path):
+    """On a cone the normal had turned by how far other particles lie below theirs."""
+    cone = {"begin": [0.0, 0.0, 0.8], "end": [0.0, 0.0, 0.0], "radius": 0.5}
+    tables = tomllib.loads(TANK) | {"physics": {"gravity": [0.0, 0.0, -9.0]}, "walls": {"cone": {}}}
+    tables["space"] = {"dimensions": 3, "spacing": 0.125}
+    tables["soils"]["bed"]["shape"] = {"box": {"lower": [-0.5, -0.5, -1.0], "upper": [0.5, 0.5, 0.0]}}
+    tables["walls"]["cone"]["shape"] = {"cone": cone}
+    scene = Scene(draft(tmp_path, tomli_w.dumps(tables)))
+    steps = np.arange(-0.4375, 0.8, 0.125)
+    grid = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    places = grid[np.hypot(grid[:, 0], grid[:, 1]) < 0.625 * np.minimum(grid[:, 2], 0.79)]
+    species = np.full(len(places), scene.layout.names.index("cone"))
+    together = smooth_faces(scene, species, places)
+    alone = [smooth_faces(scene, species[:1], place[None]).normal[0] for place in places]
+    assert together.normal.any() and np.array_equal(together.normal, alone)
