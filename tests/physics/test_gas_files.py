@@ -13,10 +13,12 @@ from parallel.written import written
 from physics.test_gas import numbers_around, of
 from runs.resuming import go_on_elsewhere
 
+from psph.lab.draw.start import start_of
 from psph.output.export.command import export
 from psph.output.reader import Run
 from psph.runs.start import run
 from psph.scene import Scene, check
+from psph.scene.layout import lay_out
 
 CLOUD = """
 scheme = "gas"
@@ -138,6 +140,14 @@ def test_a_case_moves_and_heats_what_a_file_has(tmp_path):
     v, p = in_order(simulation, "velocity", "pressure")
     assert v == pytest.approx(fields["velocity"][np.argsort(fields["id"])] + [1.0, 2.0], abs=1e-15)
     assert p == pytest.approx(3.0, rel=1e-12)
+
+
+def test_particles_of_a_file_are_drawn(tmp_path):
+    fields = particles()
+    write(tmp_path / "cloud.npz", fields)
+    frame = start_of(lay_out(draft(tmp_path, CLOUD))).frame
+    assert np.array_equal(frame["position"], fields["position"][np.argsort(fields["id"])])
+    assert not frame["group"].any()
 
 
 def changed(name, row, value):

@@ -65,7 +65,7 @@ def _parts(go, layout: Layout, start: AtStart) -> Iterator:
 
 def _faces(layout: Layout, number: int) -> np.ndarray | None:
     """The surface of a part in 3D, drawn coarsely enough; None where that is too fine, or flat."""
-    if layout.dimensions < 3:
+    if layout.dimensions < 3 or not layout.parts[number].drawn:
         return None
     shape, dx = layout.parts[number].shape, layout.spacing
     for coarse in (2.0, 4.0, 8.0, 16.0):

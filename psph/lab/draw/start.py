@@ -21,14 +21,17 @@ class AtStart(NamedTuple):
 
 
 def start_of(layout: Layout) -> AtStart:
-    """The sites that parts hold; those behind an open end are of their fluid.  Raises Refused: too many."""
+    """The sites that parts hold, those behind an open end of their fluid, and particles that are on none.
+    Raises Refused: too many."""
     first_end = layout.parts.ends.start
     group = np.arange(NONE + 1)
     group[first_end : len(layout.parts)] = [part.source for part in layout.parts[first_end:]]
-    found, places, count = [], [], 0
+    places = [*layout.placed.values()]
+    found = [np.full(len(x), number) for number, x in layout.placed.items()]
+    count, off_sites = sum(map(len, places)), [*layout.placed]
     for begin, end in layout.lattice.chunks():
         held = layout.materials(begin, end)
-        sites = held != NONE
+        sites = (held != NONE) & ~np.isin(held, off_sites)
         count += int(sites.sum())
         if count > MOST:
             raise Refused(
