@@ -67,7 +67,7 @@ END = {
     "soils/wheel": 0.01,
     "soils/overtopped_dam": 0.02,
     "soils/punch": 0.01,
-    "soils/cone": 0.005,
+    "soils/cone": 0.003,
     "soils/silo": 0.01,
     "soils/submerged_slide": 0.05,
     "solids/spinning_plate": 0.005,
