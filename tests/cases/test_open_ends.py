@@ -167,6 +167,33 @@ def test_pressures_at_both_ends_drive_what_they_should(tmp_path, under, low, hig
     assert low < store.shown("velocity")[inside, 0].mean() < high
 
 
+FINE = (
+    "space.spacing=0.05",
+    "walls.plates.shape.difference.from.box={lower=[-0.3,-0.2],upper=[2.3,1.2]}",
+    "walls.plates.shape.difference.minus=[{box={lower=[-0.3,0.0],upper=[2.3,1.0]}}]",
+)
+
+
+@LONG
+@pytest.mark.parametrize("waves, error", [("out", 0.025), ("back", 0.015)])
+def test_pressures_at_both_ends_of_fine_plates(tmp_path, waves, error):
+    """Twenty spacings across: the flow, and what of the difference of pressures is lost at each plane."""
+    keys = [key.replace('"back"', f'"{waves}"') for key in BETWEEN_PRESSURES]
+    simulation, found = start(draft(tmp_path, PLATES, *keys, *FINE)), []
+    store = simulation.store
+    while simulation.time < 6.0:
+        simulation.step()
+        if simulation.time > 5.0 and simulation.steps % 20 == 0:
+            simulation.settle_pressure()
+            x = store.shown("position")[:, 0]
+            inside = (store.shown("kind") == 0) & (abs(x - 1.0) < 0.7)
+            slope, first = np.polyfit(x[inside], store.shown("pressure")[inside], 1)
+            found.append([store.shown("velocity")[inside, 0].mean(), first, first + 2.0 * slope])
+    flow, first, last = np.mean(found, axis=0)
+    assert flow == pytest.approx(1.0, abs=error)
+    assert [2.4 - first, last] == pytest.approx([0.0, 0.0], abs=0.02 * 2.4)
+
+
 def test_what_is_pumped_out_comes_in(tmp_path):
     """From a drain in the side of a tank to a nozzle above it: as much comes in as goes out but for a row."""
     more = ('ends.nozzle={at=0.0,inward="+x",span={y=[0.5,0.6]},pump="drain",filled="water"}',)
