@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from cases.bend_by_differences import bend
 from cases.measures import CASES, finished, window
-from drafts import draft
 from gauging import start
 from long import LONG
 
@@ -178,11 +177,10 @@ def test_a_stream_bends_an_elastic_bar(tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.timeout(1800)
-@pytest.mark.parametrize("spacing", [0.025, 0.0125])
-def test_the_discharge_of_a_weir(tmp_path, spacing):
-    """At 8 and 16 spacings a head: within 4 % of Hager & Schwalt's by the head upstream, which the water finds."""
-    run = finished("ends/weir", tmp_path, f"space.spacing={spacing}")
+@pytest.mark.timeout(300)
+def test_the_discharge_of_a_weir(tmp_path):
+    """At 8 spacings a head: within 4 % of Hager & Schwalt's by the head upstream, which the water finds."""
+    run = finished("ends/weir", tmp_path, "space.spacing=0.025")
     level = window(run.gauges()["head"], "head.level", 9.0, 14.0).mean()
     flow = window(run.gauges()["crest"], "crest.flow", 9.0, 14.0).mean()
     head = level - 0.3 + (flow / level) ** 2 / 19.62
@@ -192,15 +190,14 @@ def test_the_discharge_of_a_weir(tmp_path, spacing):
 
 
 @pytest.mark.long
-@pytest.mark.timeout(1800)
-@pytest.mark.parametrize("spacing, error", [(0.02, 0.07), (0.01, 0.03)])
-def test_the_discharge_of_a_sluice(tmp_path, spacing, error):
-    """At 7 and 15 spacings an opening, by the depth before it, with a contraction of 0.61."""
-    run = finished("ends/sluice", tmp_path, f"space.spacing={spacing}", "time.end=7.0")
+@pytest.mark.timeout(600)
+def test_the_discharge_of_a_sluice(tmp_path):
+    """At 7 spacings an opening: within 7 % of that by the depth before it, with a contraction of 0.61."""
+    run = finished("ends/sluice", tmp_path, "space.spacing=0.02", "time.end=7.0")
     depth = window(run.gauges()["head"], "head.level", 5.0, 7.0).mean()
     flow = window(run.gauges()["gate"], "gate.flow", 5.0, 7.0).mean()
     jet = 0.61 * 0.15
-    assert flow == pytest.approx(jet * np.sqrt(19.62 * depth / (1.0 + jet / depth)), rel=error)
+    assert flow == pytest.approx(jet * np.sqrt(19.62 * depth / (1.0 + jet / depth)), rel=0.07)
 
 
 @pytest.mark.parametrize("spacing, error", [(0.025, 0.05), pytest.param(0.0125, 0.03, marks=LONG)])
@@ -260,49 +257,3 @@ def tide_of(time, level):
     turn = 2.0 * np.pi * time[late] / 16.0
     waves = np.array([np.ones_like(turn), np.cos(turn), np.sin(turn)]).T
     return np.hypot(*np.linalg.lstsq(waves, level[late])[0][1:])
-
-
-JUMP = """
-space = { dimensions = 2, spacing = 0.025 }
-time.end = 9.0
-physics = { gravity = [0.0, -9.81], sound_speed = 30.0 }
-[fluids.water]
-shape.union = [
-    { box = { lower = [0.0, 0.0], upper = [1.6, 0.2] } }, { box = { lower = [1.6, 0.0], upper = [7.0, 0.475] } }
-]
-pressure = "hydrostatic"
-velocity = [1.6, 0.0]
-[walls.bed]
-shape.box = { lower = [-0.2, -0.1], upper = [7.2, 0.0] }
-[ends.upstream]
-at = 0.0
-inward = "+x"
-span.y = [0.0, 0.3]
-velocity = 2.801
-level = 0.2
-[ends.downstream]
-at = 7.0
-inward = "-x"
-span.y = [0.0, 0.8]
-level = 0.474
-"""
-"""Froude number 2; by Bélanger the water behind is 0.474 m deep."""
-
-
-@LONG
-@pytest.mark.timeout(900)
-def test_a_hydraulic_jump_stands_between_its_two_levels(tmp_path):
-    """From 4 to 8 s its front stays within 0.2 m; behind it the water is 8 to 15 % less deep than by Bélanger: on a
-    slippery bed it goes on faster below than above, and so bears more of the momentum."""
-    simulation, fronts, depths = start(draft(tmp_path, JUMP)), [], []
-    edges = np.arange(0.0, 7.01, 0.2)
-    while simulation.time < 8.0:
-        simulation.step()
-        if simulation.time > 4.0 and simulation.steps % 100 == 0:
-            x = of_fluid(simulation, "position")[:, 0]
-            depth = np.histogram(x, edges)[0] * 0.025**2 / 0.2
-            fronts.append(np.interp(0.3, depth[:8], edges[:8] + 0.1))
-            depths.append(depth[10:30].mean())
-    assert 0.5 < min(fronts) and max(fronts) - min(fronts) < 0.4
-    assert abs(np.mean(fronts[-10:]) - np.mean(fronts[:10])) < 0.2
-    assert 0.85 < np.mean(depths) / 0.474 < 0.92
