@@ -40,6 +40,21 @@ velocity = [0.0, 0.0, 0.3]
 TREE = THREE.replace("softening = 0.1 }", 'softening = 0.1, method = "tree" }')
 
 
+CLOUD = """
+scheme = "gas"
+time.end = 1.0
+parallel.axis = "x"
+output = { frames = 0.02, probes = 0.01, log = 0.01 }
+space = { dimensions = 3, spacing = 0.2 }
+physics.self_gravity = { constant = 1.0, softening = "h", method = "tree" }
+[ideal_gases.cloud]
+shape.box = { lower = [-1.6, -0.6, -0.6], upper = [1.6, 0.6, 0.6] }
+density = 1.0
+gamma = 1.4
+thermal_energy = 0.5
+"""
+
+
 def three(folder, text=THREE):
     if COMM.rank == 0:
         (folder / "three.toml").write_text(text, encoding="utf-8")
@@ -47,31 +62,37 @@ def three(folder, text=THREE):
     return load(folder / "three.toml")
 
 
-def rows(simulation):
+OF_ALL = ("position", "velocity", "density", "attraction", "attraction_energy")
+
+
+def rows(simulation, *more):
     """All particles by id."""
-    store = simulation.store
-    names = "position", "velocity", "density", "attraction", "attraction_energy", "whole_attraction"
+    store, names = simulation.store, (*OF_ALL, *more)
     parts = [np.atleast_2d(store.owned_rows(name).T).T for name in ("id", *names)]
     every = np.concatenate(simulation.comm.allgather(np.hstack(parts)))
     return every[np.argsort(every[:, 0])]
 
 
 @pytest.mark.core
-@pytest.mark.parametrize("text", [THREE, TREE], ids=["all pairs", "tree"])
-def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(text, mpi_tmp_path):
+@pytest.mark.parametrize(
+    "text, more",
+    [(THREE, "whole_attraction"), (TREE, "whole_attraction"), (CLOUD, "softening_change")],
+    ids=["all pairs", "tree", "by size"],
+)
+def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(text, more, mpi_tmp_path):
     case = three(mpi_tmp_path, text)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
     owned = together.store.owned
     for _ in range(60):
         single.step()
         together.step()
-    one, many = rows(single), rows(together)
-    assert np.isfinite(one).all() and (np.ptp(one[:, -4:], axis=0) > 0.0).all()
+    one, many = rows(single, more), rows(together, more)
+    assert np.isfinite(one).all() and (np.ptp(one[:, -5:], axis=0) > 0.0).all()
     assert COMM.allreduce(owned) == len(one) > max(COMM.allgather(owned))  # no rank has all
     assert np.array_equal(one, many)
 
 
-@pytest.mark.parametrize("before, after, text", [(1, 2, THREE), (2, 1, TREE)])
+@pytest.mark.parametrize("before, after, text", [(1, 2, THREE), (2, 1, TREE), (2, 1, CLOUD)])
 def test_a_resume_on_other_ranks_goes_on_alike(before, after, text, mpi_tmp_path):
     go_on_elsewhere(three(mpi_tmp_path, text), before, after, mpi_tmp_path)
 
