@@ -95,7 +95,10 @@ class SelfGravity(NamedTuple):
 
 
 class MutualPull(NamedTuple):
-    """All that moves attracts all else, by its mass: :class:`SelfGravity` as particles feel it."""
+    """All that moves attracts all else, by its mass.
+
+    :class:`SelfGravity` as particles feel it, with ε in m.
+    """
 
     acts = MATTER
 
@@ -140,7 +143,10 @@ class WholeAttraction(NamedTuple):
 
 
 class WholePull(NamedTuple):
-    """All that moves as a whole attracts all else: :class:`WholeAttraction` as particles feel it."""
+    """All that moves as a whole attracts all else, by its mass.
+
+    :class:`WholeAttraction` as particles feel it.
+    """
 
     acts = MATTER
 

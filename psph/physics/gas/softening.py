@@ -42,8 +42,10 @@ class SofteningChange(NamedTuple):
 
 
 class ChangingSoftening(NamedTuple):
-    """Softening lengths of a gas change with its density: :class:`SofteningChange` with its kernel for h =
-    1 m."""
+    """Softening lengths of a gas change with its density.
+
+    :class:`SofteningChange` with its kernel for h = 1 m.
+    """
 
     conserves = ("momentum", "angular momentum")
 
