@@ -10,10 +10,21 @@ from psph.kinds import Created, Kind, Rank, Stage, Work, count_of
 from psph.particles.sizes import GROWTH, Sizes
 from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.shocks import switches
-from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, OF_GASES, OF_SWITCH, SHARE, SOUND, UNEQUAL
+from psph.physics.gas.state import (
+    EVENNESS,
+    HEAT,
+    LENGTH,
+    LISTED_LENGTH,
+    OF_GASES,
+    OF_SWITCH,
+    SHARE,
+    SOUND,
+    UNEQUAL,
+)
 from psph.scene.particles import settled_at
 from psph.scene.parts.gas import GasPart
 from psph.scene.sites import sites_within
+from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
 from psph.simulation.stages import nothing
 from psph.smoothing import weight
@@ -118,7 +129,8 @@ class IdealGases(Kind):
 
     def renews(self, passes) -> tuple[str, ...]:
         """Lengths and what follows from them, and the heat, of which too low a prediction is lifted."""
-        return LENGTH.name, UNEQUAL.name, SOUND.name, PREDICTED, "pressure", "specific_volume"
+        of_lengths = LENGTH.name, UNEQUAL.name, EVENNESS.name, "specific_volume"
+        return *of_lengths, SOUND.name, PREDICTED, "pressure"
 
     def stages(self) -> Mapping[str, Stage]:
         """Sizes and densities are found before the sums over pairs, which read them of neighbours."""
@@ -167,6 +179,12 @@ class IdealGases(Kind):
             "times the larger support of a pair",
         )
         yield "passes", "Before them smoothing lengths and densities by iteration, without a message"
+
+    def advice(self, guard: str, suspect) -> Iterator[str]:
+        """Of heat that leaves a particle as fast as it may, and of shorter steps."""
+        if guard == "clock":
+            yield "start with fewer unlike masses, sizes and temperatures side by side"
+        yield from shorter_step(self.scene)
 
     def cure(self, limit: str) -> str:
         """Coarser particles."""

@@ -15,7 +15,8 @@ def advice(scene, guard: str, suspect) -> list[str]:
             *shorter_step(scene),
             *_bound(guard),
         ]
-    return [*(line for kind in kinds_in(scene) for line in kind.advice(guard, suspect)), *_bound(guard)]
+    of_kinds = [line for kind in kinds_in(scene) for line in kind.advice(guard, suspect)]
+    return [*of_kinds, *_bound(guard)] or [*shorter_step(scene)]
 
 
 def _bound(guard: str) -> Iterator[str]:

@@ -11,7 +11,7 @@ from psph.kinds import Rank, Work
 from psph.parallel.reductions import exact_sums, largest
 from psph.particles.sizes import GROWTH
 from psph.physics.gas.pressure import unit_kernel
-from psph.physics.gas.state import HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
+from psph.physics.gas.state import EVENNESS, HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
 from psph.simulation.gas_shares import find_shares, shares_of
 from psph.simulation.lengths import AXES, NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state, table_of
 
@@ -82,9 +82,8 @@ class Gases(Work):
         """
         store = self._store
         came = np.zeros(store.total, np.uint8)
-        found = Lengths(
-            store[LENGTH.name], store["density"], store["specific_volume"], store[UNEQUAL.name], came
-        )
+        filled = LENGTH.name, "density", "specific_volume", UNEQUAL.name, EVENNESS.name
+        found = Lengths(*(store[name] for name in filled), came)
         self._each(
             find_lengths,
             store.low,

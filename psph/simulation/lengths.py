@@ -46,12 +46,14 @@ class Numbers(NamedTuple):
 
 
 class Lengths(NamedTuple):
-    """Arrays that are filled: h, ρ, 1/ρ, q (psph.physics.gas.state), and what came of it, by column."""
+    """Arrays that are filled: h, ρ, 1/ρ, q and 1/Ω (psph.physics.gas.state), and what came of it, by
+    column."""
 
     length: object
     density: object
     specific_volume: object
     unequal: object
+    evenness: object
     came: object
 
 
@@ -172,6 +174,7 @@ def find_lengths(first, last, low, asked, lists, table, listed, found):
             rho = table[k, 3] * alone + sums.rho
             # ∂ρ/∂h = (rising − d ρ)/h in these units, and d n Ω = growing
             found.unequal[k] = (d * rho - sums.rising) / -sums.growing if sums.growing > 0.0 else 0.0
+            found.evenness[k] = d * (alone + sums.number) / sums.growing if sums.growing > 0.0 else 1.0
             rho /= h**d
             found.density[k], found.specific_volume[k] = rho, 1.0 / rho
 

@@ -9,6 +9,8 @@ from gauging import start
 
 from psph.case import CaseError, load
 from psph.errors import Failed
+from psph.runs.advice import advice
+from psph.scene import Scene
 from psph.simulation.gas import Gases, find_sizes
 from psph.smoothing import kernel
 from psph.theory.riemann import GasState, riemann
@@ -208,6 +210,13 @@ def test_what_gases_do_not_know_is_refused_in_a_line(tmp_path):
     }.items():
         with pytest.raises(CaseError, match=says):
             load(path, sets)
+
+
+@pytest.mark.parametrize("guard", ["clock", "finite", "speed"])
+def test_a_gas_that_cannot_go_on_is_told_a_cure(tmp_path, guard):
+    path = tmp_path / "cloud.toml"
+    path.write_text(CLOUD)
+    assert "time.cfl" in " ".join(advice(Scene(load(path)), guard, None))
 
 
 def test_a_cloud_of_one_particle_is_told(tmp_path):

@@ -220,3 +220,20 @@ def test_files_have_the_same_bits_on_any_ranks_and_after_a_checkpoint(mpi_tmp_pa
     if MPI.COMM_WORLD.rank == 0:
         write(mpi_tmp_path / "cloud.npz", particles())
     go_on_elsewhere(written(mpi_tmp_path, CLOUD), before, after, mpi_tmp_path)
+
+
+def test_friction_heats_and_heat_goes_to_the_cold_among_masses_of_1_to_100(tmp_path):
+    """With f_ij in them, which may be below 0 among such, friction cools some and heat leaves the cold."""
+    fields = particles()
+    fields |= {"mass": 10.0 ** np.random.default_rng(1).uniform(-2.0, 0.0, 600), "id": np.arange(600)}
+    rates = []
+    for alpha, strength in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)):
+        friction = f"physics.shock_viscosity={{ alpha = {alpha}, beta = 0.0 }}"
+        simulation = begun(tmp_path, "masses.npz", fields, friction, f"physics.heat_conduction={strength}")
+        rates += in_order(simulation, "thermal_energy_rate")
+    calm, rubbed, conducted = rates[0], rates[1] - rates[0], rates[2] - rates[0]
+    assert rubbed.min() > -1e-12 * np.abs(calm).max() and rubbed.max() > 0.1
+    warmest_first = np.argsort(-fields["thermal_energy"])
+    assert conducted[warmest_first[:30]].max() < 0.0 < conducted[warmest_first[-30:]].min()
+    exchanged = fields["mass"] * conducted
+    assert abs(exchanged.sum()) < 1e-12 * np.abs(exchanged).sum()

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 from psph.acts import IDEAL_GASES
 from psph.physics.facts import Facts
 from psph.physics.gas.pressure import both_slopes, unit_kernel
-from psph.physics.gas.shocks import conduction, share, shock_pressure, switches
+from psph.physics.gas.shocks import conduction, even_slopes, share, shock_pressure, switches
 from psph.physics.gas.state import HEAT
 
 
@@ -42,8 +42,9 @@ class GasHeat(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Add one neighbour's share of u̇_i, W/kg."""
-        own, other = both_slopes(self.kernel, i, j, pair)
-        work = i.pressure * i.specific_volume * i.specific_volume * own
+        slope, _ = both_slopes(self.kernel, i, j, pair)
+        own, other = even_slopes(self.kernel, i, j, pair)
+        work = i.pressure * i.specific_volume * i.specific_volume * slope
         rubbed = 0.25 * shock_pressure(self.alpha, self.beta, i, j, pair) * (own + other)
         spread = conduction(self.strength, own, other, i, j, pair)
         return total + (work + rubbed) * pair.u_dot_x + spread
@@ -66,8 +67,9 @@ class SwitchedHeat(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Add one neighbour's share of u̇_i, W/kg."""
-        own, other = both_slopes(self.kernel, i, j, pair)
-        work = i.pressure * i.specific_volume * i.specific_volume * own
+        slope, _ = both_slopes(self.kernel, i, j, pair)
+        own, other = even_slopes(self.kernel, i, j, pair)
+        work = i.pressure * i.specific_volume * i.specific_volume * slope
         nu = share(i, j) * shock_pressure(self.alpha, self.beta, i, j, pair)
         spread = conduction(self.strength, own, other, i, j, pair)
         return total + (work + 0.25 * nu * (own + other)) * pair.u_dot_x + spread

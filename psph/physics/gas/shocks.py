@@ -8,7 +8,7 @@ from pydantic import Field
 from psph.acts import IDEAL_GASES
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.physics.gas.pressure import both_slopes, unit_kernel
+from psph.physics.gas.pressure import slope_by, unit_kernel
 from psph.physics.gas.state import SIGNAL
 from psph.vectors import scale
 
@@ -39,9 +39,17 @@ def share(i, j):
 
 
 @helper
+def even_slopes(kernel, i, j, pair):
+    """m_j W′(h_i)/(r Ω_i) and m_j W′(h_j)/(r Ω_j), never above 0, so that friction heats, kg/m^(d + 2)."""
+    own = i.evenness * slope_by(kernel, i.smoothing_length, pair)
+    other = j.evenness * slope_by(kernel, j.smoothing_length, pair)
+    return j.mass * own, j.mass * other
+
+
+@helper
 def mean_slope(kernel, i, j, pair):
-    """m_j W̄′/r, the mean of both slopes of a pair with their f, kg/m^(d + 2)."""
-    own, other = both_slopes(kernel, i, j, pair)
+    """m_j W̄′/r, the mean of both slopes of a pair, kg/m^(d + 2)."""
+    own, other = even_slopes(kernel, i, j, pair)
     return 0.5 * (own + other)
 
 
@@ -53,8 +61,8 @@ def switches(viscosity) -> bool:
 class ShockViscosity(NamedTuple):
     """Friction of gas that runs together: it makes shocks a few smoothing lengths wide.
 
-    a_i = −Σ_j m_j ν_ij ∇W̄, ν = (−α c̄ μ + β μ²)/ρ̄, μ = min(0, u_ij·r̂); ∇W̄ the mean of f_ij ∇W(h_i) and
-    f_ji ∇W(h_j).  With ``least`` below 1 a switch takes it off where nothing shocks
+    a_i = −Σ_j m_j ν_ij ∇W̄, ν = (−α c̄ μ + β μ²)/ρ̄, μ = min(0, u_ij·r̂); ∇W̄ the mean of ∇W(h_i)/Ω_i and
+    ∇W(h_j)/Ω_j.  With ``least`` below 1 a switch takes it off where nothing shocks
     (:class:`psph.physics.gas.switch.FlowOfGas`).  The heat that it makes is in
     :class:`psph.physics.gas.heat.GasHeat`.  Monaghan (1997), J. Comput. Phys. 136, 298; Price (2012), J.
     Comput. Phys. 231, 759.
@@ -118,7 +126,7 @@ class SwitchedViscosity(NamedTuple):
 class HeatConduction(NamedTuple):
     """Heat spreads across contacts, where the pressure would have a blip.
 
-    u̇_i = ½ α_u Σ_j m_j v (u_i − u_j) [f_ij W′(h_i)/ρ_i + f_ji W′(h_j)/ρ_j], v = √(|p_i − p_j|/ρ̄).  It keeps
+    u̇_i = ½ α_u Σ_j m_j v (u_i − u_j) [W′(h_i)/(Ω_i ρ_i) + W′(h_j)/(Ω_j ρ_j)], v = √(|p_i − p_j|/ρ̄).  It keeps
     the energy of a pair, and acts where pressure is uneven.  Price (2008), J. Comput. Phys. 227, 10040.
     """
 
@@ -131,7 +139,7 @@ class HeatConduction(NamedTuple):
 
 @helper
 def conduction(strength, own, other, i, j, pair):
-    """One neighbour's share of u̇_i by conduction, W/kg; ``own`` and ``other`` are both slopes."""
+    """One neighbour's share of u̇_i by conduction, W/kg; ``own`` and ``other`` are even slopes."""
     v = np.sqrt(abs(i.pressure - j.pressure) * mean_volume(i, j))
     both = own * i.specific_volume + other * j.specific_volume
     return 0.5 * strength * v * (i.thermal_energy - j.thermal_energy) * both * pair.r

@@ -19,6 +19,9 @@ UNEQUAL = Field(
 )
 """q_i = h_i/(d n_i Ω_i) ∂ρ_i/∂h_i: m_j f_ij = m_j − q_i (Hopkins 2013)."""
 
+EVENNESS = Field("evenness", "1", "1/Ω, f_ij among particles of one mass", image=Same)
+"""1/Ω_i, always above 0, as f_ij among unlike masses is not."""
+
 SOUND = Field("sound", "m/s", "speed of sound of a gas, √(γp/ρ), as the forces read it", image=Same)
 
 HEAT = Field("thermal_energy", "J/kg", "thermal energy by mass", saved=True, evolves=True, image=Same)
@@ -41,7 +44,7 @@ SHARE = Field(
 OF_SWITCH = (EARLIER, SHOCKED, SHARE)
 """What their work fills where viscosity is not the same everywhere."""
 
-OF_GASES = (LENGTH, LISTED_LENGTH, UNEQUAL, SOUND)
+OF_GASES = (LENGTH, LISTED_LENGTH, UNEQUAL, EVENNESS, SOUND)
 """What their work fills."""
 
 
