@@ -71,11 +71,12 @@ class Snapshot(Drawing):
 
     def misfit(self, dimensions: int) -> str:
         """Why it is not of so many dimensions, with a cure; empty where it is."""
-        x = begun_in(self.found).position
-        has = x.shape[1]
-        if has > dimensions and not x[:, dimensions:].any():
-            has = dimensions
-        return "" if has == dimensions else f"has places in {has}D; give space.dimensions = {has}"
+        begun = begun_in(self.found)
+        for name, x in (("places", begun.position), ("velocities", begun.velocity)):
+            has = x.shape[1]
+            if has != dimensions and (has < dimensions or x[:, dimensions:].any()):
+                return f"has {name} in {has}D; give space.dimensions = {has}"
+        return ""
 
 
 @cache

@@ -156,6 +156,13 @@ def changed(name, row, value):
     return fields
 
 
+def out_of_the_plane():
+    fields = particles()
+    padded = {name: np.pad(fields[name], ((0, 0), (0, 1))) for name in ("position", "velocity")}
+    padded["velocity"][4, 2] = 0.1
+    return fields | padded
+
+
 def without(name):
     return {other: values for other, values in particles().items() if other != name}
 
@@ -173,6 +180,7 @@ def without(name):
         ("cloud.npz", particles() | {"mass": np.ones(7)}, "position has 600 rows and mass 7"),
         ("cloud.npz", particles() | {"position": np.ones(600)}, r"position has the shape \(600,\); give"),
         ("cloud.npz", {n: v[:0] for n, v in particles().items()}, "has no particle"),
+        ("cloud.npz", out_of_the_plane(), "has velocities in 3D; give space.dimensions = 3"),
     ],
 )
 def test_a_file_that_is_wrong_is_told_in_a_line(tmp_path, name, fields, says):
