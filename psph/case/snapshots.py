@@ -130,6 +130,9 @@ def _of_csv(path: Path) -> dict[str, np.ndarray]:
     """Columns x, y, z; vx, vy, vz; mass; thermal_energy and id where there are such."""
     names, cells = cells_of(path, MOST)
     axes = [axis for axis in AXES if axis in names] or [AXES[0]]
+    for axis in AXES:
+        if f"v{axis}" in names and axis not in axes:
+            raise Unfit(f"{path} has v{axis} and no {axis}; add {axis}, or remove v{axis}")
     columns = {
         "position": axes,
         "velocity": [f"v{axis}" for axis in axes],

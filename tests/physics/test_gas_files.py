@@ -213,6 +213,15 @@ def test_files_that_cannot_be_read_are_told(tmp_path, kept):
     assert kept in line and ";" in line
 
 
+def test_a_table_with_a_velocity_along_an_axis_that_it_has_not_is_told(tmp_path):
+    write(tmp_path / "cloud.csv", particles())
+    lines = (tmp_path / "cloud.csv").read_text().splitlines()
+    written = [f"{line},{'1.0' if n else 'vz'}" for n, line in enumerate(lines)]
+    (tmp_path / "cloud.csv").write_text("\n".join(written))
+    [line] = refusal(tmp_path, CLOUD, 'ideal_gases.cloud.file="cloud.csv"')
+    assert "has vz and no z; add z, or remove vz" in line
+
+
 def test_particles_outside_the_domain_and_too_few_are_told(tmp_path):
     write(tmp_path / "cloud.npz", changed("position", (4, 0), 1.5))
     with pytest.raises(ValueError, match=r"file: cloud.npz: row 5 is at x = 1.5 m, outside .*; change"):
