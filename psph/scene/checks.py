@@ -112,8 +112,9 @@ def warnings(scene: Scene) -> Iterator[str]:
 
 
 def _domain_faults(scene: Scene) -> Iterator[str]:
-    reach = scene.kernel.support * scene.smoothing_length
-    least = SLABS_IN_A_PERIOD * reach * (1.0 + scene.case.neighbours.skin)
+    h, skin = scene.smoothing_length, scene.case.neighbours.skin
+    reaches = [kind.sizes.reach(h) for kind in kinds_in(scene) if kind.sizes]
+    least = SLABS_IN_A_PERIOD * max(reaches, default=scene.kernel.support * h * (1.0 + skin))
     for name, low, period in zip(AXES, scene.layout.lower, scene.layout.periods):
         if period is None:
             continue

@@ -10,7 +10,7 @@ from gauging import start
 from psph.case import CaseError, load
 from psph.errors import Failed
 from psph.runs.advice import advice
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.simulation.gas import Gases, find_sizes
 from psph.smoothing import kernel
 from psph.theory.riemann import GasState, riemann
@@ -217,6 +217,17 @@ def test_a_gas_that_cannot_go_on_is_told_a_cure(tmp_path, guard):
     path = tmp_path / "cloud.toml"
     path.write_text(CLOUD)
     assert "time.cfl" in " ".join(advice(Scene(load(path)), guard, None))
+
+
+def test_a_period_that_lists_do_not_fit_is_told_before_the_run(tmp_path):
+    """They reach 1.1 times as far as those of one size."""
+    path = tmp_path / "cloud.toml"
+    path.write_text(CLOUD)
+    sets = 'space.periodic=["y"]', "space.lower=[-1.0, 0.0]", "space.upper=[3.0, 1.0]"
+    with pytest.raises(
+        CaseError, match="domain is 1 m long along the periodic axis y, the kernel needs 1.05"
+    ):
+        check(Scene(load(path, sets)))
 
 
 def test_a_cloud_of_one_particle_is_told(tmp_path):
