@@ -118,7 +118,16 @@ def _wrong(fields: Mapping[str, np.ndarray]) -> Iterator[str]:
             if name in ("mass", "thermal_energy"):
                 above = " above 0"
             yield f"row {rows[0] + 1}: {name} is {value[0]:g}; give a number{above}"
+    place = fields["position"]
+    order = np.lexsort(place.T)
+    same = np.flatnonzero((np.diff(place[order], axis=0) == 0.0).all(axis=1))
+    if len(same):
+        one, other = sorted(order[same[0] : same[0] + 2].tolist())
+        yield f"row {other + 1} stands where row {one + 1} does; give each its own place"
     if "id" in fields:
+        broken = np.flatnonzero(fields["id"] % 1)
+        if len(broken):
+            yield f"row {broken[0] + 1}: id is {fields['id'][broken[0]]:g}; give a whole number"
         order = np.argsort(fields["id"], kind="stable")
         same = np.flatnonzero(np.diff(fields["id"][order]) == 0)
         if len(same):

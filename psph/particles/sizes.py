@@ -39,7 +39,7 @@ class Sizes(NamedTuple):
         for axis, period in zip("xyz", periods):
             if period is not None and CUTOFFS_A_PERIOD * found > period:
                 raise TooLarge(
-                    f"a particle's smoothing length has grown to {longest:.4g} m: {CUTOFFS_A_PERIOD:g} times "
+                    f"a particle's smoothing length is {longest:.4g} m: {CUTOFFS_A_PERIOD:g} times "
                     f"its reach is more than the period along {axis}, {period:g} m; give a longer domain or "
                     "more particles"
                 )

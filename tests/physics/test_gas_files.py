@@ -176,6 +176,8 @@ def without(name):
         ("cloud.hdf5", changed("thermal_energy", 5, -2.0), "row 6: thermal_energy is -2; give .* above 0"),
         ("cloud.npz", changed("velocity", (7, 1), np.nan), "row 8: velocity is nan; give a number"),
         ("cloud.npz", changed("id", 3, particles()["id"][9]), "row 10: its id .* was given before"),
+        ("cloud.npz", particles() | {"id": particles()["id"] + 0.5}, "row 1: id is .*; give a whole number"),
+        ("cloud.npz", changed("position", 8, particles()["position"][3]), "row 9 stands where row 4 does"),
         ("cloud.npz", without("thermal_energy"), "has no thermal energy; add it to the file, or give"),
         ("cloud.npz", particles() | {"mass": np.ones(7)}, "position has 600 rows and mass 7"),
         ("cloud.npz", particles() | {"position": np.ones(600)}, r"position has the shape \(600,\); give"),
