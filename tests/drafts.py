@@ -7,6 +7,16 @@ from remedies import FILES, beside
 from psph.case import Case, CaseError, load
 from psph.case.files import files_of
 
+ROUND = """
+[space]
+dimensions = 2
+spacing = 0.05
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.0, 1.0]
+"""
+"""A square of 20 by 20 sites that repeats itself along both axes."""
+
 WATER = """
 scheme = "sph"
 [space]

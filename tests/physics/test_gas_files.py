@@ -6,7 +6,7 @@ import re
 import h5py
 import numpy as np
 import pytest
-from drafts import draft, refusal
+from drafts import ROUND, draft, refusal
 from gauging import start
 from mpi4py import MPI
 from parallel.written import written
@@ -20,20 +20,17 @@ from psph.runs.start import run
 from psph.scene import Scene, check
 from psph.scene.layout import lay_out
 
-CLOUD = """
-scheme = "gas"
-[space]
-dimensions = 2
-spacing = 0.05
-periodic = ["x", "y"]
-lower = [0.0, 0.0]
-upper = [1.0, 1.0]
+CLOUD = (
+    'scheme = "gas"'
+    + ROUND
+    + """
 [time]
 end = 0.02
 [ideal_gases.cloud]
 file = "cloud.npz"
 gamma = 1.6666666666666667
 """
+)
 NAMES = {"position": "Coordinates", "velocity": "Velocities", "mass": "Masses"}
 NAMES |= {"thermal_energy": "InternalEnergy", "id": "ParticleIDs"}
 

@@ -2,21 +2,17 @@
 
 import numpy as np
 import pytest
-from drafts import draft, refusal
+from drafts import ROUND, draft, refusal
 from gauging import start
 from parallel.written import written
 from physics.test_gas import of
 from runs.resuming import go_on_elsewhere
 from scipy.spatial import cKDTree
 
-BOX = """
-scheme = "gas"
-[space]
-dimensions = 2
-spacing = 0.05
-periodic = ["x", "y"]
-lower = [0.0, 0.0]
-upper = [1.0, 1.0]
+BOX = (
+    'scheme = "gas"'
+    + ROUND
+    + """
 [time]
 end = 0.05
 [ideal_gases.gas]
@@ -25,6 +21,7 @@ density = 2.0
 pressure = 1.0
 start = "hexagonal"
 """
+)
 CUBE = BOX.replace("dimensions = 2", "dimensions = 3").replace('"y"]', '"y", "z"]')
 CUBE = CUBE.replace("0.0, 0.0]", "0.0, 0.0, 0.0]").replace("1.0, 1.0]", "1.0, 1.0, 1.0]")
 RELAXED = "ideal_gases.gas.start=relaxed"

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from drafts import draft, refusal
+from drafts import ROUND, draft, refusal
 from gauging import start
 from parallel.written import written
 from physics.test_gas import CALM, of
@@ -123,14 +123,10 @@ def test_a_stretch_needs_a_box_and_a_formula_numbers_everywhere(tmp_path):
         check(Scene(case))
 
 
-FLOW = """
-scheme = "gas"
-[space]
-dimensions = 2
-spacing = 0.05
-periodic = ["x", "y"]
-lower = [0.0, 0.0]
-upper = [1.0, 1.0]
+FLOW = (
+    'scheme = "gas"'
+    + ROUND
+    + """
 [time]
 end = 0.03
 [physics]
@@ -142,6 +138,7 @@ pressure = "2 + sin(2 * pi * x) * cos(2 * pi * y)"
 velocity = ["sin(2 * pi * y)", "0.1 if x < 0.5 else tanh(x)"]
 jitter = 0.2
 """
+)
 
 
 @pytest.mark.mpi(min_size=2)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from drafts import WATER, draft, refusal
+from drafts import ROUND, WATER, draft, refusal
 from mpi4py import MPI
 from runs.resuming import keep, steps, taken_up
 
@@ -12,13 +12,9 @@ from psph.runs.setup import lattice_particles
 from psph.scene import Scene
 from psph.smoothing import slope_over_r, weight
 
-PERIODIC = """
-[space]
-dimensions = 2
-spacing = 0.05
-periodic = ["x", "y"]
-lower = [0.0, 0.0]
-upper = [1.0, 1.0]
+PERIODIC = (
+    ROUND
+    + """
 [time]
 end = 1.0
 [physics]
@@ -26,6 +22,7 @@ sound_speed = 10.0
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
 """
+)
 
 TANK = """
 [space]
