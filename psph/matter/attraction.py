@@ -5,7 +5,7 @@ from math import log2, pi, sqrt
 from typing import ClassVar
 
 from psph.fields import Field
-from psph.kinds import Kind, Rank, Stage, Work, count_of, kinds_in
+from psph.kinds import Kind, count_of, kinds_in
 from psph.physics.gas.softening import DEEPENING
 from psph.physics.rigid.body import RigidBody
 from psph.physics.self_gravity import (
@@ -20,6 +20,7 @@ from psph.physics.self_gravity import (
     takes_tree,
 )
 from psph.simulation.gas_deepening import Deepening
+from psph.work import Rank, Stage, Work
 
 PAIR = 2.4e-9
 """Seconds of a pair on a core: by docs/gravity.md."""

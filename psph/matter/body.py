@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from psph.fields import Field
-from psph.kinds import Kind, Rank, Stage, Work
+from psph.kinds import Kind
 from psph.physics.motion import COUPLE
 from psph.physics.rigid.body import RigidBody
 from psph.scene.answering import answer
@@ -17,6 +17,7 @@ from psph.scene.joints import joint_words
 from psph.scene.lines import line_faults, line_warnings, line_words, strung_at_start
 from psph.scene.solids import meets
 from psph.scene.volumes import moved_as_whole
+from psph.work import Rank, Stage, Work
 
 
 class RigidBodies(Kind):

@@ -4,10 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from psph.case.courses import Course
 from psph.case.keys import AXES
-from psph.kinds import Kind, Rank, Stage, Work
+from psph.kinds import Kind
 from psph.scene.end_checks import end_faults, end_warnings
 from psph.scene.ends import faces_of
 from psph.simulation.stages import nothing
+from psph.work import Rank, Stage, Work
 
 GIVEN_IN = {"velocity": "m/s", "flow": "m³/s", "pressure": "Pa", "level": "m"}
 """The units of what an end gives."""

@@ -10,10 +10,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from psph.kinds import Created, Kind, Work, kinds_in
+from psph.kinds import Created, Kind, kinds_in
 from psph.physics.motion import OfItsKind
 from psph.scene.sites import sites_in
 from psph.scene.species import Species
+from psph.work import Work
 
 
 class FreeKind(Kind):

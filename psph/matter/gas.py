@@ -6,7 +6,7 @@ from collections.abc import Container, Iterator, Mapping
 import numpy as np
 
 from psph.fields import VELOCITY, Field
-from psph.kinds import Created, Kind, Rank, Stage, Work, count_of
+from psph.kinds import Created, Kind, count_of
 from psph.particles.sizes import GROWTH, Sizes
 from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.shocks import switches
@@ -28,6 +28,7 @@ from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
 from psph.simulation.stages import nothing
 from psph.smoothing import weight
+from psph.work import Rank, Stage, Work
 
 FORCE_LIMIT = 0.25
 """Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""

@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 
-from psph.kinds import Kind, Stage
+from psph.kinds import Kind
 from psph.physics.region import is_sink, is_source, next_time
 from psph.scene.regions import regions_in, regions_of
 from psph.simulation.stages import nothing
+from psph.work import Stage
 
 
 class Regions(Kind):

@@ -11,7 +11,7 @@ from psph.case.updated import referred_in, updated_in
 from psph.composition.loads import Pushes
 from psph.composition.space import Metres
 from psph.fields import FLUID, Field
-from psph.kinds import Kind, Rank, Work
+from psph.kinds import Kind
 from psph.particles.records import record_width
 from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import COVER, FACE, OF_FRICTION, REACH
@@ -35,6 +35,7 @@ from psph.scene.sites import sites_within
 from psph.scene.solid_checks import fast_start, solid_advice, solid_faults, solid_lines, solid_warnings
 from psph.scene.solids import solid_fields
 from psph.simulation.solid_plan import SolidPlan, pass_of_contacts, solid_plan
+from psph.work import Rank, Work
 
 NUMBER, ROW, ENTRY = 8, 12, 4
 """Bytes of a number, of the position of a list, and of a neighbour in it."""

@@ -6,13 +6,14 @@ from functools import cached_property
 import numpy as np
 
 from psph.case.keys import AXES
-from psph.kinds import Kind, Rank, Stage, Work
+from psph.kinds import Kind
 from psph.physics.motion import deforms
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.stress.faces import DRAWN, DRAWN_SIDE, EDGE, NORMAL, SIDE
 from psph.scene.motion_checks import motion_faults, motion_lines
 from psph.scene.smooth import smooth_faces
 from psph.scene.waving import wave_lines
+from psph.work import Rank, Stage, Work
 
 
 class Walls(Kind):

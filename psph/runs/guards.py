@@ -9,7 +9,6 @@ import numpy as np
 from psph.composition.mirrors import BELOW
 from psph.errors import typed
 from psph.fields import FLUID, WALL
-from psph.kinds import Work
 from psph.output.diagnostics import moving_mass, total_energy, work_done
 from psph.output.errors import OutputError
 from psph.parallel.reductions import largest, wrapped_sums
@@ -22,6 +21,7 @@ from psph.runs.resume import newest_checkpoint, write_checkpoint
 from psph.runs.worst_particle import Suspect, find
 from psph.scene.outside import WallRegion
 from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
+from psph.work import Work
 
 EVERY = 100
 """Steps from one look behind the walls and at the energy to the next."""

@@ -4,7 +4,7 @@ psph.simulation.tree_sum)."""
 
 import numpy as np
 
-from psph.kinds import Rank, Work, count_of
+from psph.kinds import count_of
 from psph.output.diagnostics import true_mass
 from psph.parallel.reductions import all_rows
 from psph.physics.motion import is_free
@@ -20,6 +20,7 @@ from psph.physics.self_gravity import (
 from psph.simulation.direct_sum import DirectSum
 from psph.simulation.masses import ID, MASS, OLD, PLACE, SIZE, WHOLE, WIDTH, Pulled
 from psph.simulation.tree_sum import TreeSum
+from psph.work import Rank, Work
 
 
 class MutualPulls(Work):

@@ -13,7 +13,6 @@ from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
 from psph.fields import HELD_ACCELERATION, companions, seen_at, view_of
-from psph.kinds import Rank
 from psph.output.ledger import Ledger
 from psph.particles.records import Records
 from psph.particles.store import Store
@@ -35,6 +34,7 @@ from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
 from psph.simulation.rules import Columns, Rules
+from psph.work import Rank
 
 NONE = (None, None)
 """The arrays of a pass without rates."""

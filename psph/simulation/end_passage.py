@@ -4,12 +4,12 @@ import numpy as np
 
 from psph.engine.settled import settled
 from psph.fields import FLUID
-from psph.kinds import Rank
 from psph.parallel.reductions import all_rows, exact_sums, whole_sums
 from psph.scene.ends import EndFace
 from psph.simulation.end_levels import EndLevel, fit_rows
 from psph.simulation.end_queues import DIES, run_queues
 from psph.simulation.end_state import Books, EndState
+from psph.work import Rank
 
 BEYOND = 2
 """Spacings behind the last layer up to which fluid behind a plane is taken for what went out."""

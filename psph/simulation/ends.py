@@ -6,7 +6,6 @@ import numpy as np
 
 from psph.engine.settled import settled
 from psph.fields import FLUID, LISTED_POSITION
-from psph.kinds import Rank, Work
 from psph.parallel.reductions import whole_sums
 from psph.scene.end_columns import side_by_side
 from psph.scene.ends import EndFace, faces_of
@@ -25,6 +24,7 @@ from psph.simulation.end_means import (
 )
 from psph.simulation.end_passage import MOBILE, Passage, within
 from psph.simulation.end_state import Books, EndState
+from psph.work import Rank, Work
 
 MOVED = 0.4
 """Spacings past the plane at which particles change sides before lists are due."""

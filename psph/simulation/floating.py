@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from psph.engine.settled import settled
-from psph.kinds import Work
 from psph.parallel.reductions import whole_sums
 from psph.physics.motion import ANCHOR
 from psph.physics.rigid.bodies import Bodies, crossing
@@ -19,6 +18,7 @@ from psph.scene.lines import lines_of
 from psph.simulation.riders import Riders
 from psph.simulation.solid_plan import solid_plan
 from psph.simulation.touching import Contacts
+from psph.work import Work
 
 BITS = 58
 """Of whole numbers of 64 bits, for a push of ρ₀c², of the modulus of a solid, or of the strongest pull, on

@@ -24,13 +24,13 @@ from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
-from psph.kinds import Work
 from psph.physics.motion import LOAD, WORK
 from psph.physics.solid.deformation import INERTIA
 from psph.physics.solid.motion import Immersed
 from psph.simulation.solid_plan import solid_plan
 from psph.simulation.wet_contact import WetContact
 from psph.vectors import add, at, dot, put, scale
+from psph.work import Work
 
 
 def substeps(

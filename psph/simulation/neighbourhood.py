@@ -6,7 +6,6 @@ import numpy as np
 
 from psph.composition.mirrors import with_own_rows
 from psph.fields import APART, WALL
-from psph.kinds import Work
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin, Unlisted
 from psph.parallel.straying import Straying
@@ -17,6 +16,7 @@ from psph.particles.store import Store
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.wetting import Wetting
+from psph.work import Work
 
 
 class Neighbourhood:

@@ -5,12 +5,12 @@ from dataclasses import asdict
 
 import numpy as np
 
-from psph.kinds import Work
 from psph.output.gauges.level import LevelGauge
 from psph.output.gauges.make import PER_SPACING
 from psph.physics.rigid.absorption import Absorbing, Correction
 from psph.physics.rigid.pose import Pose, in_space, maps
 from psph.vectors import Vector, add, dot, scale
+from psph.work import Work
 
 
 class Face:

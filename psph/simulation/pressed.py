@@ -8,7 +8,6 @@ from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import WALL
-from psph.kinds import Work
 from psph.physics.motion import ANCHOR, COUPLE, LOAD, WORK, is_rigid
 from psph.physics.rigid.mapped import linear
 from psph.physics.rigid.pose import PLACE, VELOCITY
@@ -16,6 +15,7 @@ from psph.physics.solid.contact import FACE, FACE_RATE, MET, TURNING
 from psph.scene.faces import drawn_faces
 from psph.simulation.solid_plan import solid_plan
 from psph.vectors import add, at, dot, put, scale, subtract
+from psph.work import Work
 
 
 class Pressed(Work):

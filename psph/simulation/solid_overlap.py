@@ -7,10 +7,10 @@ import numpy as np
 from psph.engine.jit import compiled
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
-from psph.kinds import Work
 from psph.parallel.reductions import largest
 from psph.physics.solid.contact import REACH
 from psph.vectors import at, dot, nearest_image, subtract
+from psph.work import Work
 
 
 class SolidOverlap(Work):

@@ -5,7 +5,6 @@ import numpy as np
 from psph.composition.space import Metres, softening
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
-from psph.kinds import Work
 from psph.parallel.domain import Extent
 from psph.parallel.partner_halo import PartnerHalo, follow
 from psph.parallel.reductions import exact_sums
@@ -47,6 +46,7 @@ from psph.simulation.solid_plan import solid_plan
 from psph.simulation.solid_shares import shares_of
 from psph.simulation.solid_table import SolidRecords
 from psph.smoothing import kernel
+from psph.work import Work
 
 PLACES, FLUX = "position", "flux"
 """What partners need before the first pass of a step, and before the second."""

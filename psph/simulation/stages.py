@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from psph.errors import Refused
-from psph.kinds import Stage
 from psph.parallel.reductions import largest
+from psph.work import Stage
 
 
 def stages_of(plan) -> Iterator[Stage]:

@@ -15,12 +15,12 @@ from psph.case.keys import Table, Vector, key
 from psph.case.shapes import Shape
 from psph.fields import VECTOR, Drifting, Field, Same
 from psph.formula import where
-from psph.kinds import Stage
 from psph.matter.free import FreeKind, FreeParticles
 from psph.parallel.reductions import exact_sums
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.walls.conditions import MIRROR
 from psph.vectors import add, scale, zero_like
+from psph.work import Stage
 
 RATE = Field("drag_rate", "1/s", "1 over the stopping time of a grain, 0 of what is no grain", image=Same)
 HEAT = Field("drag_heat", "J", "what drag has turned into heat", saved=True)

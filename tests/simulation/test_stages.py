@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import pytest
 
 from psph.errors import Refused
-from psph.kinds import Kind, Stage
+from psph.kinds import Kind
 from psph.simulation import stages
+from psph.work import Stage
 
 OWN = Stage(stages.nothing, stages.nothing)
 
