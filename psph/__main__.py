@@ -143,7 +143,7 @@ def _plot(options, comm) -> None:
         print(triangles(options.folder))
         return
     cut = slice_of(options.cut) if options.cut else None
-    shown = (options.times, options.field, cut, options.surface)
+    shown = (options.times, options.field, cut, options.surface, options.column)
     if options.film is not None:
         signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # what is half made goes
         print(film(options.folder, options.film if options.film.name else None, *shown))

@@ -174,6 +174,13 @@ def _add_plot_options(plot: argparse.ArgumentParser) -> None:
     plot.add_argument(
         "--slice", dest="cut", metavar="AXIS=PLACE", help="in 3D, the particles at a plane, such as y=0.5 (m)"
     )
+    plot.add_argument(
+        "--column",
+        nargs="?",
+        const="z",
+        metavar="AXIS",
+        help="mass by area along an axis (default: z), with --field the mean by mass along it",
+    )
     plot.add_argument("--surface", action="store_true", help="in 3D, the surface of the fluid, not particles")
     plot.add_argument(
         "--solids",

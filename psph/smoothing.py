@@ -305,3 +305,8 @@ def kernel(name: str, smoothing_length: float, dimensions: int):
     cls: Any = KERNELS[name]
     constants = np.atleast_1d(cls.norm[dimensions - 1]) / smoothing_length**dimensions
     return cls(1.0 / smoothing_length, *constants.tolist())
+
+
+def unit_kernel(kernel, dimensions: int) -> Any:
+    """The ``kernel`` of a scene with h = 1 m."""
+    return kernel._replace(inverse_h=1.0, alpha=kernel.alpha / kernel.inverse_h**dimensions)

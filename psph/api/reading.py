@@ -231,15 +231,17 @@ class Results:
         times: Sequence[float] | None = None,
         slice: str | None = None,
         surface: bool = False,
+        column: str | None = None,
     ) -> list[Path]:
         """Draw ``field`` at ``times`` (s; four over the run), probes, gauges, log and an overview into the
-        folder; their paths.  ``slice``, such as "y=0.5", and ``surface`` are for 3D: docs/pictures.md."""
+        folder; their paths.  ``slice``, such as "y=0.5", and ``surface`` are for 3D, ``column`` is an axis
+        to look along: docs/pictures.md."""
         from psph.lab.study.beside import beside
         from psph.output.pictures.flat import slice_of
         from psph.output.pictures.plot import plot
 
         cut = slice_of(slice) if slice else None
-        return plot(self.folder, times, field, cut, surface, experiments=beside(self.folder))
+        return plot(self.folder, times, field, cut, surface, column, experiments=beside(self.folder))
 
     def export(self, to: str, times: Sequence[float] | None = None, out: str | Path | None = None) -> Path:
         """Write frames for other programs, ``to`` "vtk", "gadget" or "paraview"; what is to be opened

@@ -8,7 +8,6 @@ import numpy as np
 from psph.fields import VELOCITY, Field
 from psph.kinds import Created, Kind, count_of
 from psph.particles.sizes import GROWTH, Sizes
-from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.shocks import switches
 from psph.physics.gas.state import (
     EVENNESS,
@@ -27,7 +26,7 @@ from psph.scene.sites import sites_within
 from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
 from psph.simulation.stages import nothing
-from psph.smoothing import weight
+from psph.smoothing import unit_kernel, weight
 from psph.work import Rank, Stage, Work
 
 FORCE_LIMIT = 0.25

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from psph.fields import FLUID
+from psph.fields import FLUID, GAS
 
 ALL: tuple[int, ...] = ()
 """In place of groups: all that flows."""
@@ -10,5 +10,5 @@ ALL: tuple[int, ...] = ()
 
 def counted(kinds: np.ndarray, of: tuple[int, ...]) -> np.ndarray:
     """Which groups count, by their ``kinds`` (groups,): those ``of`` these numbers, or ALL that flows."""
-    flows = kinds == FLUID
+    flows = np.isin(kinds, (FLUID, GAS))
     return flows & np.isin(np.arange(len(kinds)), of) if of else flows

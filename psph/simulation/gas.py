@@ -9,10 +9,10 @@ from psph.engine.threads import in_threads
 from psph.errors import Failed
 from psph.parallel.reductions import exact_sums, largest
 from psph.particles.sizes import GROWTH
-from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.state import EVENNESS, HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
 from psph.simulation.gas_shares import find_shares, shares_of
 from psph.simulation.lengths import AXES, NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state, table_of
+from psph.smoothing import unit_kernel
 from psph.work import Rank, Work
 
 TINY = np.finfo(float).tiny

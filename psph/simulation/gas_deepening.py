@@ -5,11 +5,10 @@ import numpy as np
 
 from psph.engine.jit import elementwise
 from psph.engine.threads import in_threads
-from psph.physics.gas.pressure import unit_kernel
 from psph.physics.gas.softening import DEEPENING
 from psph.physics.gas.state import LENGTH
 from psph.physics.self_gravity import growing_depth
-from psph.smoothing import slope
+from psph.smoothing import slope, unit_kernel
 from psph.vectors import at, dot, nearest_image, subtract
 from psph.work import Rank
 

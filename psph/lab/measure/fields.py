@@ -10,13 +10,14 @@ import numpy as np
 from psph.case.keys import AXES
 from psph.case.loader import load_to_read
 from psph.lab.errors import MeasureError
-from psph.lab.measure.grids import GridPoints, Weighing, at_points, clouds
 from psph.output.checkpoint import COPY
 from psph.output.export.parts import in_space
 from psph.output.export.vtk import collection, image, replace
 from psph.output.flowing import ALL, counted
+from psph.output.grids import GridPoints, Weighing, at_points, clouds
 from psph.output.progress import with_progress
 from psph.output.reader import Run
+from psph.output.sizes import of_sizes
 from psph.scene import Scene
 from psph.scene.shapes import shown
 from psph.simulation.materials import Materials
@@ -104,8 +105,9 @@ class Gridding:
             yield self._frame(number, float(moments[number]), places)
 
     def _frame(self, number: int, time: float, places: np.ndarray) -> Gridded:
-        frame = self.run.frame(number, *dict.fromkeys(("position", "kind", "group", "density", *self.fields)))
-        fluid, walls, rows = clouds(frame, self._materials, self._counting)
+        reads = ("position", "kind", "group", "density", *of_sizes(self.run.fields), *self.fields)
+        frame = self.run.frame(number, *dict.fromkeys(reads))
+        fluid, walls, rows = clouds(frame, self._materials, self._counting, self.scene.smoothing_length)
         values = {name: frame[name][rows] for name in self.fields}
         found, share = at_points(fluid, walls, self._around, values, places)
         shape = self.points.counts[: self.dimensions]

@@ -12,12 +12,10 @@ import numpy as np
 
 from psph.output.export.parts import Exported, in_space
 from psph.output.progress import with_progress
+from psph.output.sizes import LENGTH
 
 TYPES = 6
 """Types of particles that a snapshot can have."""
-
-SIZE = "smoothing_length"
-"""The field of frames that holds the sizes of particles, where these differ."""
 
 _NAMES = {
     "position": "Coordinates",
@@ -56,7 +54,7 @@ def _fill(file: h5py.File, exported: Exported, k: int) -> None:
     frame = exported.run.frame(k)
     dimensions = frame["position"].shape[1]
     part = exported.parts(frame["group"])
-    lengths, scene = frame.pop(SIZE, None), exported.scene
+    lengths, scene = frame.pop(LENGTH, None), exported.scene
     frame.setdefault("mass", exported.masses[frame["group"]])
     support = np.full(len(part), exported.support)
     if lengths is not None:

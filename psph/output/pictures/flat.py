@@ -61,7 +61,6 @@ class Flat:
     ):
         self.room, self.cut, self.mirrors, self.first_whole = room, cut, mirrors, first_whole
         self.variant, self.remark = "", ""
-        level = room.level
         if cut is not None:
             if not room.lower[cut.axis] <= cut.place <= room.upper[cut.axis]:
                 low, high = room.lower[cut.axis], room.upper[cut.axis]
@@ -70,12 +69,16 @@ class Flat:
                     f"{high:.4g} m; give a place between these"
                 )
             self.variant, self.remark = "slice", f"slice at {AXES[cut.axis]} = {cut.place:.3g} m"
-            level = tuple(axis for axis in level if axis != cut.axis)
-        up = room.up if cut is None or room.up != cut.axis else level[-1]
+        self.look(None if cut is None else cut.axis)
+        self.keyed = room.dimensions > 1  # in 1D the height carries the values
+
+    def look(self, along: int | None) -> None:
+        """Lay out the page for who looks ``along`` an axis of a room in 3D."""
+        room, level = self.room, tuple(axis for axis in self.room.level if axis != along)
+        up = room.up if room.up != along else level[-1]
         self.up, self.across = (0, 0) if room.dimensions == 1 else (up, level[0])
         axes = [self.across, self.up]
         self.lower, self.upper = room.lower[axes], room.upper[axes]
-        self.keyed = room.dimensions > 1  # in 1D the height carries the values
 
     @property
     def aspect(self) -> float:
@@ -87,27 +90,19 @@ class Flat:
         """The visible particles of ``frame``."""
         if self.cut is None:
             return frame
-        seen = np.abs(frame["position"][:, self.cut.axis] - self.cut.place) < THICK * self.room.spacing
+        seen = np.abs(frame["position"][:, self.cut.axis] - self.cut.place) < THICK * frame["width"]
         return {name: rows[seen] for name, rows in frame.items()}
 
     def draw(self, axes: Axes, frame: dict, scale: Scale, first: bool, last: bool) -> None:
         """One frame; the ``first`` panel of a row and the ``last`` of a column have labels."""
-        spacing, values = self.room.spacing, frame["values"] * scale.factor
-        fluid = frame["kind"] != WALL
         axes.set_xlim(self.lower[0], self.upper[0])
         if self.room.dimensions == 1:
-            _dots(axes, frame["position"][:, 0], values, fluid, spacing)
+            values, fluid = frame["values"] * scale.factor, frame["kind"] != WALL
+            _dots(axes, frame["position"][:, 0], values, fluid, frame["width"])
             axes.set_ylim(*_padded(scale.norm.vmin, scale.norm.vmax))
         else:
-            places = frame["position"][:, [self.across, self.up]]
-            whole = np.zeros(len(fluid), bool)
-            if self.first_whole is not None:
-                whole = ~fluid & (frame["group"] >= self.first_whole)
-                circles(axes, places[whole], spacing, facecolors=style.WHOLE)
-            circles(axes, places[~fluid & ~whole], spacing, facecolors=style.WALLS)
-            drawn = circles(axes, places[fluid], spacing, norm=scale.norm, cmap=scale.colours)
-            drawn.set_array(values[fluid])
             axes.set_ylim(self.lower[1], self.upper[1])
+            self.fill(axes, frame, scale)
             for axis, at in self.mirrors:
                 line = axes.axvline if axis == self.across else axes.axhline
                 line(at, color=style.INK, lw=0.8)
@@ -123,24 +118,40 @@ class Flat:
         if last:
             axes.set_xlabel(self.room.on_page(self.across))
 
+    def fill(self, axes: Axes, frame: dict, scale: Scale) -> None:
+        """What fills the page of a scene in a plane: particles."""
+        fluid, width = frame["kind"] != WALL, frame["width"]
+        places = frame["position"][:, [self.across, self.up]]
+        whole = np.zeros(len(fluid), bool)
+        if self.first_whole is not None:
+            whole = ~fluid & (frame["group"] >= self.first_whole)
+            circles(axes, places[whole], width[whole], facecolors=style.WHOLE)
+        still = ~fluid & ~whole
+        circles(axes, places[still], width[still], facecolors=style.WALLS)
+        over = np.argsort(-width[fluid], kind="stable")  # small ones lie on large ones
+        places, width, values = places[fluid][over], width[fluid][over], frame["values"][fluid][over]
+        drawn = circles(axes, places, width, norm=scale.norm, cmap=scale.colours)
+        drawn.set_array(values * scale.factor)
 
-def circles(axes: Axes, places: np.ndarray, spacing: float, **colours) -> EllipseCollection:
-    """Particles as circles that touch, or that leave no gap where they are too small to tell."""
+
+def circles(axes: Axes, places: np.ndarray, wide: np.ndarray | float, **colours) -> EllipseCollection:
+    """Particles ``wide`` m as circles that touch, or that leave no gap where they are too small to tell."""
     lower, upper = axes.get_xlim()
-    points = 72 * style.width(axes) / (upper - lower) * spacing
-    size = np.full(len(places), spacing * (1.05 if points > TELLING else 1.42))
+    wide = np.broadcast_to(wide, len(places))
+    points = 72 * style.width(axes) / (upper - lower) * wide
+    size = wide * np.where(points > TELLING, 1.05, 1.42)
     shape = {"units": "xy", "offsets": places, "offset_transform": axes.transData, "lw": 0}
-    smooth = points > 1.0  # circles of about a pixel would make a pattern of their own
+    smooth = bool(points.max(initial=0.0) > 1.0)  # circles of about a pixel would make a pattern of their own
     drawn = EllipseCollection(size, size, 0 * size, antialiaseds=smooth, **shape, **colours)
     return axes.add_collection(drawn, autolim=False)
 
 
-def _dots(axes: Axes, places: np.ndarray, values: np.ndarray, fluid: np.ndarray, spacing: float) -> None:
+def _dots(axes: Axes, places: np.ndarray, values: np.ndarray, fluid: np.ndarray, wide: np.ndarray) -> None:
     """Values over places in 1D, as dots half as wide as their particles, within what the eye can tell."""
     lower, upper = axes.get_xlim()
-    size = min(max(36 * style.width(axes) / (upper - lower) * spacing, SMALLEST_DOT), LARGEST_DOT)
+    size = np.clip(36 * style.width(axes) / (upper - lower) * wide, SMALLEST_DOT, LARGEST_DOT)
     for chosen, colour in ((~fluid, style.WALLS), (fluid, style.LINES[0])):
-        axes.plot(places[chosen], values[chosen], "o", ms=size, mew=0, color=colour)
+        axes.scatter(places[chosen], values[chosen], size[chosen] ** 2, color=colour, lw=0)
 
 
 def _padded(low: float, high: float) -> tuple[float, float]:

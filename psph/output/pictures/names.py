@@ -24,7 +24,7 @@ GRID = "grid"
 
 DERIVED = ("vorticity",)
 """Fields that frames do not hold, and pictures show."""
-VARIANTS = ("surface", "slice")
+VARIANTS = ("surface", "slice", "column")
 """Other ways to show a field than the usual one."""
 
 _GAUGED = re.compile(r"gauge-[A-Za-z0-9_-]+\.png")

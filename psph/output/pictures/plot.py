@@ -16,16 +16,17 @@ def plot(
     field: str | None = None,
     cut: Slice | None = None,
     smooth: bool = False,
+    along: str | None = None,
     experiments: Sequence = (),
 ) -> list[Path]:
     """Draw ``field`` (default: psph.output.pictures.quantities.usual) at ``times`` (s; four over the run),
     probes, gauges, log and overview as PNG files.
 
-    They stand in ``folder``; their paths are returned.  ``cut`` and ``smooth``: see :class:`Show`;
+    They stand in ``folder``; their paths are returned.  ``cut``, ``smooth``, ``along``: see :class:`Show`;
     ``experiments`` (psph.lab.study.beside) are drawn beside gauges.  Raises Refused if there is nothing
     to draw, no such field, or no means to draw it.
     """
-    show = Show(Run(folder), times, field, cut, smooth)
+    show = Show(Run(folder), times, field, cut, smooth, along)
     name, variant = show.quantity.name, show.panel.variant
     made = {
         names.name_of(name, variant, k): show.picture([k])
@@ -55,6 +56,7 @@ def film(
     field: str | None = None,
     cut: Slice | None = None,
     smooth: bool = False,
+    along: str | None = None,
 ) -> str:
     """Film ``field`` from the least to the greatest of ``times`` s, or all frames; what was made, in words.
 
@@ -63,4 +65,4 @@ def film(
     from psph.output.pictures.film import film_of, kind_of
 
     kind_of(path)
-    return film_of(Show(Run(folder), times, field, cut, smooth), path, times is None)
+    return film_of(Show(Run(folder), times, field, cut, smooth, along), path, times is None)

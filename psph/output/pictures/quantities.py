@@ -5,11 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.fields import FLUID, PRESSURE
+from psph.fields import FLUID, GAS, PRESSURE
 from psph.output.errors import NotThere
 from psph.output.pictures.groups import matter_of, spreading_of, wholes_called
 from psph.output.pictures.vorticity import vorticity
 from psph.output.reader import Run
+from psph.output.sizes import LENGTH, widths
 
 VELOCITY, SPEED, VORTICITY, GROUP = "velocity", "speed", "vorticity", "group"
 """The field, its size under the name that people use, its curl, and the number of a fluid or wall."""
@@ -25,7 +26,8 @@ class Quantity(NamedTuple):
     ``name`` stands in the names of files.  ``signed``: its sign matters as much as its size: zero is in the
     middle of its colours.  ``names`` has those of the fluids where it counts them, ``whole`` the
     word for what is moved as a whole, which shares a colour.  ``of_flow``: where there are any, the limits
-    of the colours are theirs, since stresses of solids beside them are of another size.
+    of the colours are theirs, since stresses of solids beside them are of another size.  ``steep``:
+    its colours go by powers of ten, from dark.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Quantity(NamedTuple):
     whole: str = ""
     samples: int = SAMPLES
     of_flow: bool = False
+    steep: bool = False
 
 
 def quantity(run: Run, case: dict, field: str) -> Quantity:
@@ -103,12 +106,16 @@ def _vorticity(case: dict) -> Quantity:
     if not flowing:
         raise NotThere("plot --field vorticity: the run has no fluid; choose von_mises, or another field")
     periods = periods_of(case)
-    rest = np.array([material["density"] for _, material in flowing])
 
     def values(frame: dict) -> np.ndarray:
-        fluid = frame["kind"] == FLUID
-        volume = rest[frame["group"][fluid]] / frame["density"][fluid] * space["spacing"] ** dimensions
-        reach = 2.0 * space["smoothing"] * space["spacing"]
+        fluid = np.isin(frame["kind"], (FLUID, GAS))
+        width = widths(frame, space)[fluid]
+        if LENGTH in frame:
+            volume = width**dimensions
+        else:
+            rest = np.array([material["density"] for _, material in flowing])
+            volume = rest[frame["group"][fluid]] / frame["density"][fluid] * space["spacing"] ** dimensions
+        reach = 2.0 * space["smoothing"] * width
         omega = vorticity(frame["position"][fluid], frame["velocity"][fluid], volume, reach, periods)
         sizes = np.full(len(fluid), np.nan)
         sizes[fluid] = omega if omega.ndim == 1 else np.linalg.norm(omega, axis=1)

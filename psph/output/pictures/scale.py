@@ -6,16 +6,19 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Colormap, ListedColormap, Normalize
+from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from psph.output.pictures import style
 from psph.output.pictures.quantities import Quantity
 
-SIZES, SIGNS = "viridis", "cividis"
-"""Colours of what has a size, and of what has a sign (grey at zero).  Both go from dark to light, so that
-they survive a grey print and colour blindness: Nuñez, Anderton & Renslow (2018), PLoS ONE 13, e0199239."""
+SIZES, SIGNS, STEEP = "viridis", "cividis", "inferno"
+"""Colours of what has a size, of what has a sign (grey at zero), and of what spans powers of ten.  All go
+from dark to light, so that they survive a grey print and colour blindness: Nuñez, Anderton & Renslow (2018),
+PLoS ONE 13, e0199239."""
+POWERS, STEEPEST = 1e-4, 10.0
+"""Least over largest value of colours that go by powers of ten, and largest over least of others."""
 NEAR_ZERO = 0.1
 """Share of the highest value below which the colours begin at zero."""
 OUTLIER = 0.25
@@ -53,6 +56,11 @@ class Scale(NamedTuple):
             0.6 + LETTER * max(map(len, (*self.names, *(name for name, _ in self.others))), default=0),
         )
 
+    @property
+    def on_dark(self) -> bool:
+        """Whether nothing has the darkest colour."""
+        return isinstance(self.norm, LogNorm)
+
     def rgb(self, values: np.ndarray) -> np.ndarray:
         """Colours (n, 3), whole numbers to 255, of values (n,) in the quantity's own unit."""
         return ScalarMappable(self.norm, self.colours).to_rgba(values * self.factor, bytes=True)[:, :3]
@@ -70,7 +78,8 @@ class Scale(NamedTuple):
             ScalarMappable(self.norm, self.colours), cax=axes, extend=self.extend, extendfrac=0.03
         )
         bar.outline.set_visible(False)
-        style.ticks(axes.yaxis, 6)
+        if not self.on_dark:
+            style.ticks(axes.yaxis, 6)
         room = style.height(axes) + style.TOP  # the subtitle has the name too
         bar.set_label(self.label if LETTER * len(self.label) < room else self.unit)
 
@@ -84,6 +93,8 @@ def scale_of(quantity: Quantity, samples: Sequence[np.ndarray]) -> Scale:
         return _named(quantity)
     values = np.concatenate([*samples, np.empty(0)])
     values = values[np.isfinite(values)]
+    if quantity.steep and values.max(initial=0.0) > STEEPEST * np.percentile(values, 0.5):
+        return _by_powers(quantity, values)
     values = values if len(values) else np.zeros(1)
     low = np.percentile(values, 0.5, method="higher")
     high = np.percentile(values, 99.5, method="lower")
@@ -110,3 +121,12 @@ def _named(quantity: Quantity) -> Scale:
     norm = Normalize(-0.5, count - 0.5)
     others = ((quantity.whole, style.WHOLE),) if quantity.whole else ()
     return Scale(quantity.title, norm, colours, "neither", 1.0, "", quantity.names, others)
+
+
+def _by_powers(quantity: Quantity, values: np.ndarray) -> Scale:
+    """From the largest value down to the least, over no more than ``POWERS``."""
+    high = values.max(initial=1e-300)
+    low = max(np.percentile(values, 0.5), POWERS * high)
+    factor, unit = style.readable(quantity.unit, high)
+    extend = "min" if values.min(initial=high) < low else "neither"
+    return Scale(quantity.title, LogNorm(low * factor, high * factor), STEEP, extend, factor, unit)

@@ -8,19 +8,20 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from psph.case.keys import AXES
-from psph.errors import Refused
 from psph.fields import FLUID, WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
 from psph.output.pictures.groups import first_whole, wholes_of
 from psph.output.pictures.mirrors import mirrors_of, with_mirrors
-from psph.output.pictures.quantities import quantity, usual
+from psph.output.pictures.quantities import FEW_SAMPLES, quantity, usual
+from psph.output.pictures.raster import DENSITY, column_density, filled
 from psph.output.pictures.scale import Scale, scale_of
+from psph.output.pictures.sight import Sight
 from psph.output.pictures.view import Panel, around_most, box_around, room_of, spread
 from psph.output.progress import with_progress
 from psph.output.reader import Run
+from psph.output.sizes import LENGTH, of_sizes, widths
 
 LARGEST = (7.6, 5.6)
 """Width and height that all panels together may take, inches."""
@@ -47,8 +48,8 @@ class Glance(NamedTuple):
 class Show:
     """A field of a run, in the frames nearest to ``times`` in s, or in four over the run.
 
-    ``cut``: in 3D, a slice; else the whole scene, ``smooth`` with the surface of its fluid.  Raises NotThere
-    where a frame, the field or the place is not there.
+    ``cut``: in 3D, a slice; ``along`` an axis: what lines of sight meet; else the whole scene, ``smooth``
+    with the surface of its fluid.  Raises NotThere where a frame, the field or the place is not there.
     """
 
     def __init__(
@@ -58,51 +59,64 @@ class Show:
         field: str | None,
         cut: Slice | None = None,
         smooth: bool = False,
+        along: str | None = None,
     ):
         self.run, self.times = run, run.times
         if not len(self.times):
             raise NotThere(f"{run.path}: no frame yet; wait for the first one")
         self.case = tomllib.loads(run.case_text)
         self.title = self.case.get("title") or run.path.stem
-        self._spatial = _refuse_in_a_plane(self.case["space"]["dimensions"], cut, smooth)
-        self.quantity = quantity(run, self.case, field or usual(run, self.case))
+        asked, dimensions = Sight(cut, smooth, along), self.case["space"]["dimensions"]
+        sized = LENGTH in run.fields
+        self._spatial = asked.in_space(dimensions, sized)
+        self._filled = along is not None or cut is not None and sized
+        if along is not None and field in (None, DENSITY):
+            self.quantity = column_density(dimensions)
+        else:
+            self.quantity = quantity(run, self.case, field or usual(run, self.case))
         self.chosen = self._chosen(times)
         self.frame = lru_cache(maxsize=1)(self._frame)
-        self.panel, self.scale = self._panel_and_scale(cut, smooth)
+        self.panel, self.scale = self._panel_and_scale(asked)
 
     def _frame(self, k: int) -> dict:
         """The visible particles of a frame, with their ``values``, and its ``lines``."""
         return self.panel.of(self._whole(k)) | {"lines": self.run.lines(k)}
 
     def _whole(self, k: int) -> dict:
-        reads = {"position", "kind", *self.quantity.reads, *self._told_apart}
+        reads = {"position", "kind", *self.quantity.reads, *self._told_apart, *of_sizes(self.run.fields)}
         frame = self.run.frame(k, *reads)
-        return frame | {"values": self.quantity.values(frame)}
+        width = widths(frame, self.case["space"])
+        return frame | {"values": self.quantity.values(frame), "width": width}
 
     @property
     def _told_apart(self) -> tuple[str, ...]:
         """Fields that tell which wall or body a particle is of, where that is drawn."""
         if self._spatial:
             return ("group", "id")
+        if self._filled:
+            return ("group", "density")
         return ("group",) if wholes_of(self.case) else ()
 
-    def _panel_and_scale(self, cut: Slice | None, smooth: bool) -> tuple[Panel, Scale]:
+    def _panel_and_scale(self, asked: Sight) -> tuple[Panel, Scale]:
         if self._spatial:
             from psph.output.pictures import spatial
 
             spatial.pyvista()  # missing, it is missed before any work
         sample = spread(len(self.times), self.quantity.samples)
         glances = [self._glance(k) for k in with_progress(sample, "looking at the run", "frames")]
-        scale = scale_of(self.quantity, [glance.values for glance in glances])
         mirrors = mirrors_of(self.case, self.run.folder)
         boxes = [with_mirrors(glance.box, mirrors) for glance in glances]
         room = room_of(self.case, boxes, [glance.most for glance in glances])
+        if self._filled:
+            panel = filled(room, asked.cut, asked.along, self.run.folder, self.quantity)
+            some = with_progress(spread(len(self.times), FEW_SAMPLES), "looking at the run", "frames")
+            return panel, scale_of(self.quantity, [panel.pixels(self._whole(k)).ravel() for k in some])
+        scale = scale_of(self.quantity, [glance.values for glance in glances])
         if not self._spatial:
             whole = first_whole(self.case) if wholes_of(self.case) else None
-            return Flat(room, cut, mirrors, whole), scale
-        return spatial.scene(
-            self.case, self.run.folder, self._whole(0), room, [glance.groups for glance in glances], smooth
-        ), scale
+            return Flat(room, asked.cut, mirrors, whole), scale
+        groups = [glance.groups for glance in glances]
+        return spatial.scene(self.case, self.run.folder, self._whole(0), room, groups, asked.smooth), scale
 
     def _glance(self, k: int) -> Glance:
         frame = self._whole(k)
@@ -168,16 +182,6 @@ class Show:
         if len(chosen) == 1:
             parts.append(self._moment(chosen[0]))
         return ", ".join(parts)
-
-
-def _refuse_in_a_plane(dimensions: int, cut: Slice | None, smooth: bool) -> bool:
-    """Whether it is a scene in 3D.  Refused: what only that has, of another."""
-    if dimensions < 3 and (cut is not None or smooth):
-        asked = "--surface" if smooth else f"--slice {AXES[cut.axis]}={cut.place:g}"
-        raise Refused(f"plot {asked}: the run has {dimensions} dimensions; leave it out")
-    if cut is not None and smooth:
-        raise Refused("plot --surface: a slice has none; leave --slice or --surface out")
-    return dimensions == 3 and cut is None
 
 
 def _grid(count: int, aspect: float) -> tuple[int, float, float]:

@@ -124,7 +124,8 @@ class View3D:
             _refuse_without_opengl(plotter.render_window)
             plotter.set_background("white")
             fluid = (frame["kind"] != WALL) & self.room.holds(frame["position"])
-            self._add_fluid(plotter, frame["position"][fluid], frame["values"][fluid], scale)
+            shown = (frame[name][fluid] for name in ("position", "values", "width"))
+            self._add_fluid(plotter, *shown, scale)
             for part in self.parts:
                 self._add_part(plotter, part, part.at(frame))
             for points, tension in frame["lines"].values():
@@ -140,7 +141,9 @@ class View3D:
         finally:
             plotter.close()
 
-    def _add_fluid(self, plotter, places: np.ndarray, values: np.ndarray, scale: Scale) -> None:
+    def _add_fluid(
+        self, plotter, places: np.ndarray, values: np.ndarray, width: np.ndarray, scale: Scale
+    ) -> None:
         if not len(places):
             return
         shine = {"ambient": 0.5, "diffuse": 0.75, "specular": 0.15, "specular_power": 15.0}
@@ -154,11 +157,11 @@ class View3D:
         from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
         cloud = self._pv.PolyData(places)
-        cloud["rgb"] = scale.rgb(values)
+        cloud["rgb"], cloud["radius"] = scale.rgb(values), (width / 2).astype(np.float32)
         cloud.set_active_scalars("rgb")
         mapper = vtkOpenGLSphereMapper()
         mapper.SetInputData(cloud)
-        mapper.SetRadius(self.room.spacing / 2)
+        mapper.SetScaleArray("radius")
         actor = self._pv.Actor()
         actor.SetMapper(mapper)
         for name, share in shine.items():

@@ -4,9 +4,10 @@ from typing import Any, NamedTuple
 
 from psph.acts import IDEAL_GASES
 from psph.physics.facts import Facts
-from psph.physics.gas.pressure import both_slopes, unit_kernel
+from psph.physics.gas.pressure import both_slopes
 from psph.physics.gas.shocks import conduction, even_slopes, share, shock_pressure, switches
 from psph.physics.gas.state import HEAT
+from psph.smoothing import unit_kernel
 
 
 class GasHeat(NamedTuple):

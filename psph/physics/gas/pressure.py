@@ -6,7 +6,7 @@ from psph.acts import IDEAL_GASES
 from psph.engine.jit import overload, unrolled
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.smoothing import slope_over_r
+from psph.smoothing import slope_over_r, unit_kernel
 from psph.vectors import scale
 
 
@@ -33,11 +33,6 @@ def both_slopes(kernel, i, j, pair):
     own = (j.mass - i.unequal) * slope_by(kernel, i.smoothing_length, pair)
     other = (j.mass - j.unequal * (j.mass / i.mass)) * slope_by(kernel, j.smoothing_length, pair)
     return own, other
-
-
-def unit_kernel(kernel, dimensions: int) -> Any:
-    """The ``kernel`` of a scene with h = 1 m."""
-    return kernel._replace(inverse_h=1.0, alpha=kernel.alpha / kernel.inverse_h**dimensions)
 
 
 class GasPressure(NamedTuple):

@@ -8,8 +8,9 @@ from pydantic import Field
 from psph.acts import IDEAL_GASES
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.physics.gas.pressure import slope_by, unit_kernel
+from psph.physics.gas.pressure import slope_by
 from psph.physics.gas.state import SIGNAL
+from psph.smoothing import unit_kernel
 from psph.vectors import scale
 
 

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 from psph.acts import MATTER
 from psph.fields import Field, Same
 from psph.physics.facts import Facts
-from psph.physics.gas.pressure import slope_by, unit_kernel
+from psph.physics.gas.pressure import slope_by
 from psph.physics.self_gravity import BY_SIZE, SelfGravity
+from psph.smoothing import unit_kernel
 from psph.vectors import scale
 
 DEEPENING = Field(

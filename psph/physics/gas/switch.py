@@ -8,9 +8,10 @@ from psph.acts import IDEAL_GASES
 from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.physics.fluid.strain import linear_gradient, no_rate, take_rate
-from psph.physics.gas.pressure import slope_by, unit_kernel
+from psph.physics.gas.pressure import slope_by
 from psph.physics.gas.shocks import switches
 from psph.physics.gas.state import COMPRESSION, ROTATION
+from psph.smoothing import unit_kernel
 from psph.vectors import dot, skew_part, symmetric_part, trace
 
 CALM = 1e-4

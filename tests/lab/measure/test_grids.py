@@ -7,7 +7,7 @@ from drafts import CHANNEL, TANK, draft
 from psph.__main__ import main
 from psph.errors import Refused
 from psph.lab.measure.fields import Gridding
-from psph.lab.measure.grids import Cloud, Weighing, at_points
+from psph.output.grids import Cloud, Weighing, at_points
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
 from psph.runs.start import run

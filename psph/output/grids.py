@@ -8,8 +8,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from psph.errors import Refused
-from psph.fields import BUFFER, FLUID
+from psph.fields import BUFFER, FLUID, GAS
 from psph.output.interpolation import folded
+from psph.output.sizes import LENGTH
 
 IN_FLUID = 0.5
 """Share of what walls leave of the kernel in the fluid from which on a point counts as within it, as for a
@@ -28,7 +29,7 @@ STRAIGHT = 1e-4
 ENTRIES = 4096
 """Of the table of the kernel's weights."""
 
-AT_ONCE = 1 << 15
+AT_ONCE = 1 << 13
 """Points that are processed together."""
 
 MOST = 50_000_000
@@ -71,10 +72,12 @@ class GridPoints(NamedTuple):
 
 
 class Cloud(NamedTuple):
-    """Particles: places (n, dim), m, and volumes V (n,)."""
+    """Particles: places (n, dim), m, volumes V (n,), and how many times as ``wide`` as the kernel each is
+    spread, (n,) where sizes differ."""
 
     position: np.ndarray
     volume: np.ndarray
+    wide: np.ndarray | float = 1.0
 
 
 class Weighing(NamedTuple):
@@ -91,9 +94,10 @@ def at_points(
     """Fields at ``places`` (n, dim), m, of their ``values`` at particles of the ``fluid``, and its
     share S of what the ``walls``, all that does not flow, leave of the kernel.
 
-    At each place a + G·(x − x₀) is fitted to the particles with the weights V W, the kernel's sums with
-    their first moments corrected (Shepard 1968; Belytschko and others 1996, Comput. Methods Appl. Mech. Eng.
-    139, 3): a constant and a straight field come out as they are, up to walls and the surface too.  Where
+    At each place a + G·(x − x₀) is fitted to the particles with the weights V W, W by the size of each: the
+    kernel's sums with their first moments corrected (Shepard 1968; Belytschko and others 1996, Comput.
+    Methods Appl. Mech. Eng. 139, 3): a constant and a straight field come out as they are, up to walls and
+    the surface too.  Where
     particles tell no slope it is their mean, Σ V W f/Σ V W.  S = Σ V W/(1 − Σ_w V_w W); where it is less than
     ½ a place is beyond the surface, and where a wall is nearer than the fluid it is in the wall: there is
     NaN.
@@ -103,16 +107,14 @@ def at_points(
     radius = kernel.support / kernel.inverse_h
     r = np.linspace(0.0, radius, ENTRIES)
     table = r, np.array([kernel.w(one) for one in r.tolist()])
-    trees = [cKDTree(folded(one.position - start, lengths), boxsize=lengths) for one in (fluid, walls)]
+    bands = [_Bands(one, folded(one.position - start, lengths), lengths, radius) for one in (fluid, walls)]
     share = np.zeros(len(places))
     found = {name: np.full((len(places), *rows.shape[1:]), np.nan) for name, rows in values.items()}
     rows = {name: one.reshape(len(one), int(np.prod(one.shape[1:]))) for name, one in values.items()}
     for first in range(0, len(places), AT_ONCE):
         some = slice(first, first + AT_ONCE)
         at = folded(places[some] - start, lengths)
-        near, beside = (
-            _Near(tree, at, lengths, radius, one.volume, table) for tree, one in zip(trees, (fluid, walls))
-        )
+        near, beside = (_Near(one, at, table) for one in bands)
         left = np.maximum(1.0 - beside.moments[:, 0, 0], LEAST_LEFT)
         share[some] = near.moments[:, 0, 0] / left
         within = (share[some] >= IN_FLUID) & (near.nearest <= beside.nearest + BESIDE * radius)
@@ -123,19 +125,47 @@ def at_points(
     return found, share
 
 
+class _Bands:
+    """The particles of a ``cloud`` at ``position`` by size, one band twice as wide as the one before: each is
+    searched as far as its widest reach, ``radius`` times how wide they are."""
+
+    def __init__(self, cloud: Cloud, position: np.ndarray, lengths: np.ndarray, radius: float):
+        self.position, self.volume, self.lengths, self.radius = position, cloud.volume, lengths, radius
+        self.wide = np.broadcast_to(np.asarray(cloud.wide, float), len(position))
+        level = np.floor(np.log2(self.wide))
+        self._rows = [np.flatnonzero(level == one) for one in np.unique(level)]
+        self._trees = [cKDTree(position[rows], boxsize=lengths) for rows in self._rows]
+
+    def pairs(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The numbers of places (n, dim) and of particles that reach them, and the distances, m."""
+        asking, found = cKDTree(places, boxsize=self.lengths), []
+        for rows, tree in zip(self._rows, self._trees):
+            reach = self.radius * self.wide[rows]
+            near = asking.sparse_distance_matrix(tree, float(reach.max()), output_type="ndarray")
+            near = near[near["v"] <= reach[near["j"]]]
+            found.append((near["i"], rows[near["j"]], near["v"]))
+        if not found:
+            return np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0)
+        place, particle, distance = map(np.concatenate, zip(*found))
+        return place, particle, distance
+
+
 class _Near:
     """The particles near some places, with their weights and moments."""
 
-    def __init__(self, tree: cKDTree, places, lengths, radius: float, volume, table):
+    def __init__(self, bands: _Bands, places: np.ndarray, table):
         self.count, d = places.shape
-        pairs = cKDTree(places, boxsize=lengths).sparse_distance_matrix(tree, radius, output_type="ndarray")
-        self.place, self.particle = pairs["i"], pairs["j"]
-        away = tree.data[self.particle] - places[self.place]
+        lengths, radius = bands.lengths, bands.radius
+        self.place, self.particle, distance = bands.pairs(places)
+        away = bands.position[self.particle] - places[self.place]
         away -= lengths * np.rint(away / np.where(lengths > 0.0, lengths, 1.0))
         self.nearest = np.full(self.count, np.inf)
-        np.minimum.at(self.nearest, self.place, pairs["v"])
-        self.weight = volume[self.particle] * np.interp(pairs["v"], *table)
-        self.basis = np.column_stack([np.ones(len(away)), away / radius])
+        np.minimum.at(self.nearest, self.place, distance)
+        wide = bands.wide[self.particle]
+        self.weight = bands.volume[self.particle] * (np.interp(distance / wide, *table) / wide**d)
+        total = self._sums(np.ones(len(wide)))
+        scale = radius * self._sums(wide) / np.where(total > 0.0, total, 1.0)
+        self.basis = np.column_stack([np.ones(len(away)), away / scale[self.place, None]])
         self.moments = np.empty((self.count, 1 + d, 1 + d))
         for a in range(1 + d):
             for b in range(a, 1 + d):
@@ -164,12 +194,15 @@ class _Near:
 
 
 def clouds(
-    frame: Mapping[str, np.ndarray], materials, counting: np.ndarray
+    frame: Mapping[str, np.ndarray], materials, counting: np.ndarray, smoothing_length: float
 ) -> tuple[Cloud, Cloud, np.ndarray]:
     """The particles of a frame that flow, of the groups that are ``counting`` (groups,), and those that do
-    not flow; and the rows of the first."""
-    volume = materials.values("mass")[frame["group"]] / frame["density"]
-    flows = np.isin(frame["kind"], (FLUID, BUFFER))
-    rows, still = np.flatnonzero(counting[frame["group"]] & (frame["kind"] == FLUID)), ~flows
-    fluid = Cloud(frame["position"][rows], volume[rows])
+    not flow; and the rows of the first.  Of a gas each has its own size, ``smoothing_length`` is that of the
+    kernel, m."""
+    mass = frame["mass"] if "mass" in frame else materials.values("mass")[frame["group"]]
+    volume = mass / frame["density"]
+    flows = np.isin(frame["kind"], (FLUID, BUFFER, GAS))
+    rows, still = np.flatnonzero(counting[frame["group"]] & (frame["kind"] != BUFFER) & flows), ~flows
+    wide = frame[LENGTH][rows] / smoothing_length if LENGTH in frame else 1.0
+    fluid = Cloud(frame["position"][rows], volume[rows], wide)
     return fluid, Cloud(frame["position"][still], volume[still]), rows
