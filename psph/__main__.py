@@ -163,12 +163,15 @@ def _export(options, comm) -> None:
 
 
 def _measure(options, comm) -> None:
-    from psph.lab.measure.command import grid, measure
+    from psph.lab.measure.command import grid, measure, profile
 
     if comm.rank != 0:
         return
     if options.grid or options.plane:
         print(grid(options))
+        return
+    if options.profile:
+        print(profile(options))
         return
     measure(options.folder, options.gauge, options.number, options.times, options.out, print)
 

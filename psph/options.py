@@ -227,8 +227,15 @@ def _add_measure_options(measure: argparse.ArgumentParser) -> None:
     measure.add_argument("--out", action=_Folder, help="folder of the files (default: FOLDER, FOLDER/grid)")
     measure.add_argument("--grid", action="store_true", help="no gauges but fields on a grid, as VTK and NPZ")
     measure.add_argument("--plane", metavar="AXIS=PLACE", help="the same on a plane, such as y=0.5 (m)")
-    measure.add_argument("--fields", nargs="+", help="of the grid (default: velocity pressure)")
-    measure.add_argument("--step", type=float, help="between its points, m (default: the spacing)")
+    measure.add_argument(
+        "--profile",
+        type=float,
+        nargs="+",
+        metavar="X",
+        help="means over shells around a place, m",
+    )
+    measure.add_argument("--fields", nargs="+", help="of grid or profile (default: velocity pressure)")
+    measure.add_argument("--step", type=float, help="between points, of shells, m (default: the spacing)")
     measure.add_argument("--from", dest="lower", type=float, nargs="+", help="its lowest corner, m")
     measure.add_argument("--to", dest="upper", type=float, nargs="+", help="its highest corner, m")
     measure.add_argument("--of", help="the fluid that counts (default: all)")

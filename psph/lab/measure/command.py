@@ -5,6 +5,7 @@ from pathlib import Path
 
 from psph.lab.measure.fields import USUAL, Gridding
 from psph.lab.measure.gauging import readings
+from psph.lab.measure.profile import Profile
 from psph.output.errors import OutputError, cause
 from psph.output.numbers import extents, in_lines, numbers_in_lines
 from psph.output.pictures.flat import slice_of
@@ -22,6 +23,17 @@ def grid(options) -> Path:
     target = options.out or options.folder / GRID
     try:
         return Gridding(options.folder, *asked).written(target, options.times)
+    except OSError as error:
+        raise OutputError(f"{target}: cannot be written: {cause(error)}") from None
+
+
+def profile(options) -> Path:
+    """Write the profile that the ``options`` of the verb ask for; its table.  Raises what
+    :class:`psph.lab.measure.profile.Profile` does, and OutputError."""
+    asked = (options.profile, options.step, options.fields or USUAL, options.of)
+    target = options.out or options.folder
+    try:
+        return Profile(options.folder, *asked).written(target, options.times)
     except OSError as error:
         raise OutputError(f"{target}: cannot be written: {cause(error)}") from None
 

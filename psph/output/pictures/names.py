@@ -22,6 +22,9 @@ EXPORTS = {"vtk": "export-vtk", "gadget": "export-gadget"}
 GRID = "grid"
 """The folder of fields on a grid."""
 
+PROFILE, PROFILE_PICTURE = "profile.csv", "profile.png"
+"""Means over shells, and their curves."""
+
 DERIVED = ("vorticity",)
 """Fields that frames do not hold, and pictures show."""
 VARIANTS = ("surface", "slice", "column")
@@ -44,7 +47,7 @@ def remove_pictures(folder: Path) -> None:
     """Remove what these have made of an earlier run; other files are not psph's."""
     for path in folder.iterdir():
         if (
-            path.name in (OVERVIEW, PROBES, LOG, PARAVIEW, REPORT)
+            path.name in (OVERVIEW, PROBES, LOG, PARAVIEW, REPORT, PROFILE, PROFILE_PICTURE)
             or _drawn().fullmatch(path.name)
             or _GAUGED.fullmatch(path.name)
         ):
