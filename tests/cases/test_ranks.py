@@ -128,6 +128,7 @@ END = {
     "gas/sedov": 0.01,
     "gas/gresho": 0.05,
     "gas/kelvin_helmholtz": 0.03,
+    "gas/colliding_discs": 0.04,
     "gravity/self_gravitating_drop": 400.0,
     "gravity/collapse": 1.0,
     "machines/rheometer": 5e-3,
