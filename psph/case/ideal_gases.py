@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, PlainSerializer, WrapValidator
 from pydantic_core import PydanticCustomError
 
-from psph.acts import BODIES, FLUIDS, FRAME, IDEAL_GASES, MIXED, SOILS, SOLIDS, SYMMETRY, UPDATED, speaks_for
+from psph.acts import BODIES, FLUIDS, FRAME, IDEAL_GASES, MIXED, SOILS, SOLIDS, UPDATED, speaks_for
 from psph.case.findings import Finding
 from psph.case.keys import AXES, key
 from psph.case.matter import RELAXED, FreeMatter, relaxed_findings
@@ -15,7 +15,7 @@ from psph.case.place_formulas import RADIUS, Formula, names_in
 from psph.case.schemes import GAS
 from psph.case.shapes import Shape
 from psph.case.snapshots import Snapshot
-from psph.physics.walls.conditions import CONDITIONS
+from psph.physics.walls.conditions import CONDITIONS, MIRROR
 
 FINEST = 16
 """Of how many parts of the scene's spacing that of a gas may be one, along an axis."""
@@ -121,10 +121,10 @@ class IdealGas(FreeMatter):
             for one in (FLUIDS, SOILS, UPDATED, SOLIDS, BODIES)
         },
         **dict.fromkeys(
-            CONDITIONS, "ideal gases feel no walls yet; remove the wall, or let the axis be periodic"
+            (one for one in CONDITIONS if one != MIRROR),
+            'ideal gases feel no walls of particles; give condition = "mirror", or let the axis be periodic',
         ),
         FRAME: "ideal gases know of no frame that moves; remove one of the two",
-        SYMMETRY: "ideal gases know of no mirrors yet; draw the whole scene",
         MIXED: 'ideal gases are computed in double precision, since energy is exact; use "double"',
     }
 

@@ -61,9 +61,14 @@ class Placed(Answering):
         return self.word in FLOWING
 
     @property
+    def finds(self) -> bool:
+        """Whether its particles find their neighbours in space, of one size or of many."""
+        return self.flows or self.word in SIZED
+
+    @property
     def moves_freely(self) -> bool:
         """Whether forces move its particles one by one."""
-        return self.flows or self.word in (*BONDED, *SIZED)
+        return self.finds or self.word in BONDED
 
     def pushed(self, case) -> bool:
         """Whether what flows pushes it, so that a force on it is known."""

@@ -20,6 +20,7 @@ from psph.physics.gas.state import (
     SOUND,
     UNEQUAL,
 )
+from psph.scene.mirrors import distances
 from psph.scene.particles import settled_at
 from psph.scene.parts.gas import GasPart
 from psph.scene.sites import sites_within
@@ -67,7 +68,9 @@ class IdealGases(Kind):
     def sizes(self) -> Sizes:
         """By the smoothing length of each particle."""
         skin = self.scene.case.neighbours.skin
-        return Sizes(self.scene.kernel.support, skin, LENGTH.name, LISTED_LENGTH.name)
+        pairs = distances(self.scene.layout.mirror_planes).values()
+        between = min((high - low for low, high in pairs), default=math.inf)
+        return Sizes(self.scene.kernel.support, skin, LENGTH.name, LISTED_LENGTH.name, between)
 
     def starts(
         self, fields: Container[str], species: np.ndarray, position: np.ndarray

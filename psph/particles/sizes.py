@@ -1,5 +1,6 @@
 """Particles of many sizes: how far lists and cells reach where each particle has its own smoothing length."""
 
+import math
 from typing import NamedTuple
 
 from psph.errors import Failed
@@ -17,12 +18,14 @@ class TooLarge(Failed):
 
 class Sizes(NamedTuple):
     """Where sizes differ: the kernel's ``support`` over h, the ``skin`` as a part of it, and the names of the
-    fields that hold h, the ``length``, and that of when lists were made, ``listed``."""
+    fields that hold h, the ``length``, and that of when lists were made, ``listed``; ``between`` is the
+    shortest distance of two mirrors across one axis, m."""
 
     support: float
     skin: float
     length: str
     listed: str
+    between: float = math.inf
 
     def reach(self, length):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""
@@ -34,7 +37,7 @@ class Sizes(NamedTuple):
 
     def cutoff(self, longest: float, periods) -> float:
         """How far lists reach, m, by the ``longest`` smoothing length of all; raises TooLarge where that does
-        not fit into the ``periods`` of the domain, m or None."""
+        not fit into the ``periods`` of the domain, m or None, or between two mirrors."""
         found = self.reach(longest)
         for axis, period in zip("xyz", periods):
             if period is not None and CUTOFFS_A_PERIOD * found > period:
@@ -43,4 +46,9 @@ class Sizes(NamedTuple):
                     f"its reach is more than the period along {axis}, {period:g} m; give a longer domain or "
                     "more particles"
                 )
+        if found > self.between:
+            raise TooLarge(
+                f"a particle's smoothing length is {longest:.4g} m: its reach is more than the distance of "
+                f"two mirrors, {self.between:g} m; put them farther apart, or give more particles"
+            )
         return found

@@ -14,6 +14,7 @@ from psph.scene.gauging import off_parts, outside_domain
 from psph.scene.lattice import TOLERANCE
 from psph.scene.lattice_fit import misfits
 from psph.scene.meshes import report as meshes
+from psph.scene.mirrors import distances
 from psph.scene.motion_checks import FARTHEST, motion_warnings, overshoots
 from psph.scene.parts import Part
 from psph.scene.scene import Scene
@@ -111,10 +112,15 @@ def warnings(scene: Scene) -> Iterator[str]:
         yield f"{scene.case.file}: {line}"
 
 
-def _domain_faults(scene: Scene) -> Iterator[str]:
+def _reach(scene: Scene) -> float:
+    """How far lists reach at the start, m."""
     h, skin = scene.smoothing_length, scene.case.neighbours.skin
     reaches = [kind.sizes.reach(h) for kind in kinds_in(scene) if kind.sizes]
-    least = SLABS_IN_A_PERIOD * max(reaches, default=scene.kernel.support * h * (1.0 + skin))
+    return max(reaches, default=scene.kernel.support * h * (1.0 + skin))
+
+
+def _domain_faults(scene: Scene) -> Iterator[str]:
+    least = SLABS_IN_A_PERIOD * _reach(scene)
     for name, low, period in zip(AXES, scene.layout.lower, scene.layout.periods):
         if period is None:
             continue
@@ -134,14 +140,11 @@ def _domain_faults(scene: Scene) -> Iterator[str]:
 
 def _mirror_faults(scene: Scene) -> Iterator[str]:
     """Two mirrors so near each other that an image of an image would be seen."""
-    reach = scene.kernel.support * scene.smoothing_length * (1.0 + scene.case.neighbours.skin)
-    faces: dict[int, list[float]] = {}
-    for plane in scene.layout.mirror_planes:
-        faces.setdefault(plane.axis, []).append(plane.at)
-    for axis, at in faces.items():
-        if max(at) - min(at) < reach and len(at) > 1:
+    reach = _reach(scene)
+    for axis, (low, high) in distances(scene.layout.mirror_planes).items():
+        if high - low < reach:
             yield (
-                f"space: the mirrors at {AXES[axis]} = {min(at):g} and {max(at):g} m are nearer to each "
+                f"space: the mirrors at {AXES[axis]} = {low:g} and {high:g} m are nearer to each "
                 f"other than the kernel and the skin reach, {reach:.4g} m; make space.spacing smaller"
             )
 

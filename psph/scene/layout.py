@@ -256,7 +256,8 @@ def lay_out(case: Case) -> Layout:
     smooths = kernel(space.kernel, space.smoothing * space.spacing, space.dimensions)
     if space.normalised:
         smooths = normalised(smooths, space.spacing, space.dimensions)
-    parts, planes = parts_of(case, gravity_of(case)), planes_of(case)
+    parts = parts_of(case, gravity_of(case))
+    planes = planes_of(case, parts)
     axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
     boxes = (clipped(bounds(part.shape), planes) for part in parts)
     lattice = lattice_around(boxes, space.origin, space.spacing, axis)

@@ -1,6 +1,7 @@
 """Plane mirrors of a scene: its planes of symmetry, and walls that are one."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
@@ -12,11 +13,11 @@ from psph.scene.forms.make import form_of
 from psph.scene.forms.plain import Boxed
 from psph.scene.forms.shell import Coat
 from psph.scene.lattice import TOLERANCE
-from psph.scene.shapes import Corner, bounds
+from psph.scene.shapes import Corner
 
 
-def planes_of(case: Case) -> tuple[Plane, ...]:
-    """The mirrors of a case: those of its domain, then those of its walls.
+def planes_of(case: Case, parts: Iterable[Any]) -> tuple[Plane, ...]:
+    """The mirrors of a case of these ``parts``: those of its domain, then those of its walls.
 
     Raises CaseError where one stands between two planes of the lattice, where one axis has two on one side,
     or where a wall has no flat face that the fluid is before.
@@ -24,7 +25,8 @@ def planes_of(case: Case) -> tuple[Plane, ...]:
     found = [(f"space.symmetry: {side}", plane) for side, plane in _of_domain(case)]
     for name, wall in case.walls.items():
         if wall.condition == MIRROR:
-            held = around([bounds(entry.of.shape) for entry in case.movers if entry.of.flows])
+            before = {".".join(entry.loc) for entry in case.movers if entry.of.finds}
+            held = around([part.room for part in parts if part.key in before])
             found += [(f"walls.{name}", plane) for plane in _of_wall(case, name, wall, held)]
     seen: dict[tuple[int, int], str] = {}
     for key, plane in found:
@@ -37,6 +39,12 @@ def planes_of(case: Case) -> tuple[Plane, ...]:
         if first != key:
             raise CaseError([f"{case.file}: {key}: {first} mirrors the same side; remove one of the two"])
     return tuple(plane for _, plane in found)
+
+
+def distances(planes: tuple[Plane, ...]) -> dict[int, tuple[float, float]]:
+    """The places, m, of the two mirrors across each axis that has two."""
+    pairs = {(one.axis, one.at, other.at) for one in planes for other in planes if one.axis == other.axis}
+    return {axis: (low, high) for axis, low, high in sorted(pairs) if low < high}
 
 
 def clipped(box: tuple[Corner, Corner], planes: tuple[Plane, ...]) -> tuple[Corner, Corner]:

@@ -11,7 +11,17 @@ from psph.parallel.reductions import exact_sums, largest
 from psph.particles.sizes import GROWTH
 from psph.physics.gas.state import EVENNESS, HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
 from psph.simulation.gas_shares import find_shares, shares_of
-from psph.simulation.lengths import AXES, NONE, OUTGROWN, Lengths, Numbers, find_lengths, find_state, table_of
+from psph.simulation.lengths import (
+    AXES,
+    NONE,
+    OUTGROWN,
+    Lengths,
+    Numbers,
+    find_lengths,
+    find_state,
+    images_in,
+    table_of,
+)
 from psph.smoothing import unit_kernel
 from psph.work import Rank, Work
 
@@ -87,7 +97,7 @@ class Gases(Work):
         self._each(
             find_lengths,
             store.low,
-            self._asked,
+            self._asked._replace(images=images_in(self._plan.mirrors, self._domain.cutoff)),
             self._domain.lists,
             table_of(store["position"], store.value("mass"), store.total),
             store[LISTED_LENGTH.name],

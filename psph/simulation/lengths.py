@@ -8,6 +8,7 @@ one solution.  Springel & Hernquist (2002), MNRAS 333, 649; Price & Monaghan (20
 from typing import NamedTuple
 
 import numpy as np
+from numba.core import types
 
 from psph.engine.jit import compiled, elementwise, inside, overload
 from psph.engine.simd import EIGHT, consecutive, put_consecutive, spread, total, turning, width_of
@@ -33,9 +34,29 @@ FOUND, OUTGROWN, NONE = 0, 1, 2
 """What came of it: h is found; it is larger than lists reach; there is none."""
 
 
+class Images(NamedTuple):
+    """Where images in mirrors stand: at ``turns`` x + ``shifts``, m, three numbers for each; a particle
+    farther than ``reach`` m from a plane sees none."""
+
+    turns: tuple[tuple[float, ...], ...]
+    shifts: tuple[tuple[float, ...], ...]
+    reach: float
+
+
+def images_in(mirrors, reach: float) -> Images | None:
+    """Those in ``mirrors`` (psph.composition.mirrors), seen up to ``reach`` m; None without mirrors."""
+    if mirrors is None:
+        return None
+    seen = mirrors.reflections[1:]
+    turns = tuple((*one.turn, *(1.0,) * (AXES - len(one.turn))) for one in seen)
+    shifts = tuple((*one.shift, *(0.0,) * (AXES - len(one.shift))) for one in seen)
+    return Images(turns, shifts, reach)
+
+
 class Numbers(NamedTuple):
     """What is asked in so many ``dimensions``: ``target`` η^d, a ``kernel`` with h = 1 m and its ``support``,
-    how far h may exceed that of the lists, ``growth``, and the ``periods`` (3,), m or None."""
+    how far h may exceed that of the lists, ``growth``, the ``periods`` (3,), m or None, and the ``images``
+    in mirrors, or None."""
 
     dimensions: int
     target: float
@@ -43,6 +64,7 @@ class Numbers(NamedTuple):
     support: float
     growth: float
     periods: tuple
+    images: object = None
 
 
 class Lengths(NamedTuple):
@@ -65,19 +87,71 @@ class Distances(NamedTuple):
 
 
 @inside
-def gather(k, row, beyond, periods, lists, table, near):
-    """Write distances and masses of all that the ``row`` of the column ``k`` names to ``near``, and behind
-    them lanes ``beyond`` m away; how many there are."""
+def gather(k, row, beyond, asked, lists, table, near):
+    """Write distances and masses of all that the ``row`` of the column ``k`` names to ``near``, of their
+    images and its own, and behind them lanes ``beyond`` m away; how many there are."""
     many, begin = np.uint64(lists.lengths[row]), lists.begin[row]
     place = table[k, 0], table[k, 1], table[k, 2]
     for n in range(np.uint64(0), many, width_of(table)):
         x, y, z, m = fetched(table, lists.lists, begin + n)
-        x_ij = nearest_image(subtract(place, (x, y, z)), periods)
+        x_ij = nearest_image(subtract(place, (x, y, z)), asked.periods)
         put_consecutive(near.distance, n, np.sqrt(dot(x_ij, x_ij)))
         put_consecutive(near.mass, n, m)
+    many = with_images(asked.images, k, row, many, asked.periods, lists, table, near)
     for n in range(many, many + np.uint64(EIGHT)):
         near.distance[n] = beyond
     return many
+
+
+def with_images(images, k, row, many, periods, lists, table, near):
+    """Write those of images in mirrors behind the ``many`` that are there; how many there are then."""
+    return many if images is None else _with_images(images, k, row, many, periods, lists, table, near)
+
+
+@overload(with_images)
+def _typed_with_images(images, k, row, many, periods, lists, table, near):
+    if isinstance(images, types.NoneType):
+        return lambda images, k, row, many, periods, lists, table, near: many
+    return lambda images, k, row, many, periods, lists, table, near: _with_images(
+        images, k, row, many, periods, lists, table, near
+    )
+
+
+@inside
+def _with_images(images, k, row, many, periods, lists, table, near):
+    listed, begin = np.uint64(lists.lengths[row]), lists.begin[row]
+    place = table[k, 0], table[k, 1], table[k, 2]
+    for one in range(len(images.turns)):
+        turn, shift = images.turns[one], images.shifts[one]
+        seen = True
+        for d in range(AXES):
+            seen = seen and (turn[d] > 0.0 or abs(2.0 * place[d] - shift[d]) < 2.0 * images.reach)
+        if not seen:
+            continue
+        # Its distance from the image of j is that of its own image from j.
+        image = turn[0] * place[0] + shift[0], turn[1] * place[1] + shift[1], turn[2] * place[2] + shift[2]
+        for n in range(np.uint64(0), listed, width_of(table)):
+            x, y, z, m = fetched(table, lists.lists, begin + n)
+            x_ij = nearest_image(subtract(image, (x, y, z)), periods)
+            put_consecutive(near.distance, many + n, np.sqrt(dot(x_ij, x_ij)))
+            put_consecutive(near.mass, many + n, m)
+        many += listed
+        x_ij = nearest_image(subtract(image, place), periods)
+        near.distance[many], near.mass[many] = np.sqrt(dot(x_ij, x_ij)), table[k, AXES]
+        many += np.uint64(1)
+    return many
+
+
+def seen(images, listed):
+    """How many a particle sees at the most that has so many neighbours ``listed``, images with them."""
+    return listed if images is None else (1 + len(images.turns)) * (listed + 1)
+
+
+@overload(seen)
+def _typed_seen(images, listed):
+    if isinstance(images, types.NoneType):
+        return lambda images, listed: listed
+    return lambda images, listed: (1 + len(images.turns)) * (listed + 1)
 
 
 def fetched(table, lists, entry):
@@ -143,9 +217,9 @@ def find_lengths(first, last, low, asked, lists, table, listed, found):
     alone = weight(kernel, 0.0)
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
-        near = room_for(near, np.int64(lists.lengths[row]))
+        near = room_for(near, seen(asked.images, np.int64(lists.lengths[row])))
         most = asked.growth * listed[k]
-        many = gather(k, row, BEYOND * most, asked.periods, lists, table, near)
+        many = gather(k, row, BEYOND * most, asked, lists, table, near)
         h, smallest, largest, came = min(found.length[k], most), 0.0, np.inf, NONE
         sums = shares_with(h, kernel, near, many)
         for _ in range(MOST_TURNS):

@@ -87,7 +87,10 @@ class Neighbourhood:
 
     def fit(self) -> None:
         """Room for the images of every particle behind the entries of the lists."""
-        self._mirrors, self._lists = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
+        mirrors = self.plan.mirrors
+        if mirrors is not None and self.plan.sizes is not None:
+            mirrors = mirrors._replace(reach=self.domain.cutoff)
+        self._mirrors, self._lists = with_own_rows(mirrors, self.store.total, self.domain.lists)
 
     def begin(self) -> None:
         """Which walls are dry at the start; lists are there."""

@@ -299,6 +299,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     refuse_unwritten(scene, called, (*computed, *told, *at_start))
     seen = tuple(field for name, field in fields.items() if name in own)
     imaged = by_name(OF_EVERY_SCENE, seen).values()
+    sized = any(kind.sizes is not None for kind in matter)  # its density is a sum, over images too
+    weight = (0.0,) * scene.dimensions if sized else scene.gravity
     if scene.layout.mirror_planes:
         refuse_without_image(scene, called, fields)
     told = {name for name in told if name in own or name not in ONLY_READ}
@@ -334,7 +336,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         kernel=scene.kernel,
         materials=materials,
         planes=scene.layout.mirror_planes,
-        mirrors=mirrors_of(scene.layout.mirror_planes, scene.gravity, scene.layout.reach.cutoff, imaged),
+        mirrors=mirrors_of(scene.layout.mirror_planes, weight, scene.layout.reach.cutoff, imaged),
         precision=case.precision,
         space=fixed_point(scene.smoothing_length, scene.layout.periods)
         if case.precision == "mixed"

@@ -126,6 +126,7 @@ END = {
     "tension/jet": 0.05,
     "gas/sod": 0.05,
     "gas/sedov": 0.01,
+    "gas/sedov_octant": 0.001,
     "gas/gresho": 0.05,
     "gas/kelvin_helmholtz": 0.03,
     "gas/colliding_discs": 0.04,

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from psph.acts import IDEAL_GASES
-from psph.formula import helper
+from psph.formula import helper, where
 from psph.physics.facts import Facts
 from psph.physics.gas.pressure import slope_by
 from psph.physics.gas.state import SIGNAL
@@ -149,12 +149,18 @@ def conduction(strength, own, other, i, j, pair):
 class FastestSignal(NamedTuple):
     """The fastest signal between a particle and its neighbours, which sets the time step.
 
-    v = max_j (c_i + c_j − 3μ).  Springel (2005), MNRAS 364, 1105.
+    v = max_j (c_i + c_j − 3μ), of all j within either support.  Springel (2005), MNRAS 364, 1105.
     """
 
     acts = (IDEAL_GASES,)
 
+    kernel: Any = None
+
     writes = SIGNAL
+
+    def in_scene(self, scene: Facts):
+        """With the kernel for h = 1 m."""
+        return FastestSignal(unit_kernel(scene.kernel, scene.dimensions))
 
     def start(self, i):
         """No neighbour yet: 2c_i, m/s."""
@@ -162,7 +168,10 @@ class FastestSignal(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """The faster of what is known and a neighbour's, m/s."""
-        return max(total, i.sound + j.sound - 3.0 * approach(pair))
+        own = slope_by(self.kernel, i.smoothing_length, pair)
+        other = slope_by(self.kernel, j.smoothing_length, pair)
+        between = i.sound + j.sound - 3.0 * approach(pair)
+        return max(total, where(own + other < 0.0, between, 0.0))
 
     def join(self, a, b):
         """The faster of two, m/s."""

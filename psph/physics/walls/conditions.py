@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from psph.acts import DIMENSIONS, FRAME, MATTER, MIXED, ONE, SEAM, SYMMETRY, speaks_for
+from psph.acts import DIMENSIONS, FRAME, MATTER, MIXED, SEAM, SYMMETRY, speaks_for
 
 DYNAMIC = "dynamic"
 """Its particles have a density, which evolves as that of the fluid (psph.physics.walls.dry)."""
@@ -38,7 +38,6 @@ class Mirror:
     """Beside what a plane mirror does not work (psph.acts)."""
 
     refuses: ClassVar = {
-        ONE: "mirrors need two or three dimensions",
         MIXED: 'mirrors do not work in single precision; use "double"',
         FRAME: "does not work with mirrors, which know of no frame that moves; remove one of the two",
     }

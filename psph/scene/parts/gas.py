@@ -19,6 +19,7 @@ from psph.scene.hexagonal import sites_of, steps_of
 from psph.scene.lattice import TOLERANCE
 from psph.scene.parts.gas_profile import GasProfile
 from psph.scene.parts.part import Part
+from psph.scene.shapes import Corner
 
 COUNTED = 8
 """Other particles by which a particle's own spacing is guessed."""
@@ -133,6 +134,11 @@ class GivenPart(GasPart):
     begun: Begun | None = None
 
     drawn: ClassVar[bool] = False
+
+    @property
+    def room(self) -> tuple[Corner, Corner]:
+        """Around its particles."""
+        return self.begun.ends(0.0)
 
     @property
     def one_mass(self) -> bool:

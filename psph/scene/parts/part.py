@@ -11,7 +11,7 @@ from psph.case.parameters import last_part
 from psph.case.shapes import Shape
 from psph.fields import WALL
 from psph.particles.reach import Reach
-from psph.scene.shapes import inside
+from psph.scene.shapes import Corner, bounds, inside
 
 SHAKEN = 1.0
 """Largest random shift along each axis, in spacings, from which particles relax: from half of it they go
@@ -102,6 +102,11 @@ class Part:
     def shape(self) -> Shape:
         """Where it is at the start."""
         return self.table.shape
+
+    @property
+    def room(self) -> tuple[Corner, Corner]:
+        """Corners of a box around it at the start, m."""
+        return bounds(self.shape)
 
     @property
     def moves_freely(self) -> bool:
