@@ -127,6 +127,11 @@ class Kind:
         """For `check`: why the scene cannot be run, each line a key and a cure."""
         yield from ()
 
+    @property
+    def farthest(self) -> float:
+        """How far its lists reach at the start, m, where its particles have sizes of their own, else 0."""
+        return 0.0
+
     def warnings(self) -> Iterator[str]:
         """For `check`: what will run, and likely not as intended."""
         yield from ()

@@ -9,6 +9,7 @@ import numpy as np
 
 from psph.case.columns import cells_of, named, numbers_of
 from psph.case.drawing import Drawing
+from psph.case.errors import advise
 from psph.case.files import Found, Unfit
 from psph.case.keys import AXES, Text, key
 
@@ -139,6 +140,8 @@ def _of_csv(path: Path) -> dict[str, np.ndarray]:
     """Columns x, y, z; vx, vy, vz; mass; thermal_energy and id where there are such."""
     names, cells = cells_of(path, MOST)
     axes = [axis for axis in AXES if axis in names] or [AXES[0]]
+    told = [axis for axis in AXES if axis in names or f"v{axis}" in names] or [AXES[0]]
+    _refuse_foreign(path, names, [*told, *(f"v{axis}" for axis in told), "mass", *MAY_LACK], "column")
     for axis in AXES:
         if f"v{axis}" in names and axis not in axes:
             raise Unfit(f"{path} has v{axis} and no {axis}; add {axis}, or remove v{axis}")
@@ -157,10 +160,17 @@ def _of_csv(path: Path) -> dict[str, np.ndarray]:
     return found
 
 
+def _refuse_foreign(path: Path, has: list[str], known: list[str], what: str) -> None:
+    """Raise Unfit for the first name that says nothing here: one that is mistyped would be left out."""
+    for name in (one for one in has if one not in known):
+        raise Unfit(f"{path} has the {what} '{name}', not known here; {advise(name, known)} Else remove it")
+
+
 def _of_npz(path: Path) -> dict[str, np.ndarray]:
     """Arrays by the names of the fields."""
     try:
         with np.load(path, allow_pickle=False) as file:
+            _refuse_foreign(path, list(file), list(OF_GADGET), "array")
             return _taken(path, file, {name: name for name in OF_GADGET}, list(file))
     except (OSError, ValueError, EOFError) as error:
         if isinstance(error, Unfit):

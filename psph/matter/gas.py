@@ -126,9 +126,19 @@ class IdealGases(Kind):
         count, least = count_of(self.scene), math.ceil(sites_within(self.scene, self.scene.support))
         if count <= least:
             yield (
-                f"{self.parts[0].key}: {count} particles in all, and space.smoothing asks for {least} "
-                "neighbours of each; put more particles, or give a smaller space.smoothing"
+                f"{self.parts[0].key}: {count} particle{'s' * (count != 1)} in all, and space.smoothing asks "
+                f"for {least} neighbours of each; put more particles, or give a smaller space.smoothing"
             )
+
+    @property
+    def farthest(self) -> float:
+        """By the largest first guess of a smoothing length."""
+        return self.sizes.reach(max(float(part.guessed(self.scene.layout).max()) for part in self.parts))
+
+    def warnings(self) -> Iterator[str]:
+        """A particle that stands so far from all others that few ranks can share the run."""
+        for part in self.parts:
+            yield from part.stragglers(self.scene.layout)
 
     def renews(self, passes) -> tuple[str, ...]:
         """Lengths and what follows from them, and the heat, of which too low a prediction is lifted."""

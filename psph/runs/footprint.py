@@ -2,7 +2,7 @@
 
 import math
 
-from psph.kinds import count_of
+from psph.kinds import count_of, kinds_in
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
@@ -74,4 +74,5 @@ def _grid(scene):
 
 
 def _cutoff(scene) -> float:
-    return scene.layout.reach.cutoff
+    """How far lists reach at the start, m: where sizes differ those of the largest particle."""
+    return max((kind.farthest for kind in kinds_in(scene)), default=0.0) or scene.layout.reach.cutoff

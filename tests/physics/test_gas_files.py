@@ -16,6 +16,7 @@ from runs.resuming import go_on_elsewhere
 from psph.lab.draw.start import start_of
 from psph.output.export.command import export
 from psph.output.reader import Run
+from psph.runs.footprint import slab_planes
 from psph.runs.start import run
 from psph.scene import Scene, check
 from psph.scene.layout import lay_out
@@ -176,6 +177,8 @@ def without(name):
         ("cloud.npz", particles() | {"id": particles()["id"] + 0.5}, "row 1: id is .*; give a whole number"),
         ("cloud.npz", changed("position", 8, particles()["position"][3]), "row 9 stands where row 4 does"),
         ("cloud.npz", without("thermal_energy"), "has no thermal energy; add it to the file, or give"),
+        ("cloud.npz", particles() | {"mas": np.ones(600)}, "has the array 'mas', .*did you mean 'mass'"),
+        ("cloud.npz", particles() | {"thermal_energy": -particles()["mass"]}, "row 1: thermal_energy is -"),
         ("cloud.npz", particles() | {"mass": np.ones(7)}, "position has 600 rows and mass 7"),
         ("cloud.npz", particles() | {"position": np.ones(600)}, r"position has the shape \(600,\); give"),
         ("cloud.npz", {n: v[:0] for n, v in particles().items()}, "has no particle"),
@@ -221,11 +224,45 @@ def test_a_table_with_a_velocity_along_an_axis_that_it_has_not_is_told(tmp_path)
     assert "has vz and no z; add z, or remove vz" in line
 
 
+def test_a_table_with_a_mistyped_column_is_told(tmp_path):
+    """Heat may be left out, and that of a column that nobody reads would be lost."""
+    write(tmp_path / "cloud.csv", particles())
+    text = (tmp_path / "cloud.csv").read_text()
+    (tmp_path / "cloud.csv").write_text(text.replace("thermal_energy", "thermal_enrgy"))
+    sets = 'ideal_gases.cloud.file="cloud.csv"', "ideal_gases.cloud.pressure=1.0"
+    [line] = refusal(tmp_path, CLOUD, *sets)
+    assert "has the column 'thermal_enrgy', not known here; did you mean 'thermal_energy'?" in line
+
+
+def test_formulas_below_zero_at_particles_are_told(tmp_path):
+    write(tmp_path / "cloud.npz", particles())
+    for name in ("pressure", "thermal_energy"):
+        with pytest.raises(ValueError, match=f'cloud.{name}: "x - 2" is -1.* at .*; give a formula'):
+            check(Scene(draft(tmp_path, CLOUD, f'ideal_gases.cloud.{name}="x - 2"')))
+
+
+ALONE = CLOUD.replace(ROUND, "\n[space]\ndimensions = 2\nspacing = 0.04\n")
+
+
+def test_one_far_particle_leaves_one_rank_and_check_says_so(tmp_path):
+    write(tmp_path / "cloud.npz", particles())
+    near = Scene(draft(tmp_path, ALONE))
+    write(tmp_path / "cloud.npz", changed("position", 7, (60.0, 0.5)))
+    far = Scene(draft(tmp_path, ALONE))
+    [line] = check(far)
+    assert not check(near) and "row 8 stands so far from others" in line and "few ranks" in line
+    assert (slab_planes(near), slab_planes(far)) == (2, 1)
+    assert start(far.case).domain.grid.counts[0] == 1  # it cannot be cut
+
+
 def test_particles_outside_the_domain_and_too_few_are_told(tmp_path):
     write(tmp_path / "cloud.npz", changed("position", (4, 0), 1.5))
     with pytest.raises(ValueError, match=r"file: cloud.npz: row 5 is at x = 1.5 m, outside .*; change"):
         check(Scene(draft(tmp_path, CLOUD)))
     write(tmp_path / "cloud.npz", {name: values[:9] for name, values in particles().items()})
+    write(tmp_path / "one.npz", {name: values[:1] for name, values in particles().items()})
+    with pytest.raises(ValueError, match="1 particle in all, and space.smoothing asks for 24 neighbours"):
+        check(Scene(draft(tmp_path, CLOUD, 'ideal_gases.cloud.file="one.npz"')))
     with pytest.raises(ValueError, match="9 particles in all, and space.smoothing asks for 24 neighbours"):
         check(Scene(draft(tmp_path, CLOUD)))
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from psph.case import Case
+from psph.case import Case, CaseError
 from psph.case.ideal_gases import HEXAGONAL, IdealGas
 from psph.case.keys import AXES
 from psph.case.matter import RELAXED
@@ -23,6 +23,9 @@ from psph.scene.shapes import Corner
 
 COUNTED = 8
 """Other particles by which a particle's own spacing is guessed."""
+
+FAR = 20.0
+"""Smoothing length over the middle one of a particle that stands far from all others."""
 
 BALL = {1: 2.0, 2: math.pi, 3: 4.0 / 3.0 * math.pi}
 """Volume of a ball of 1 m in each dimension."""
@@ -110,21 +113,39 @@ class GasPart(Part):
         """The largest c/h at the start, 1/s."""
         return self.wave_speed * self.finer / layout.smoothing_length
 
+    def guessed(self, layout: Any) -> np.ndarray:
+        """First guesses of smoothing lengths (n,), m."""
+        return np.array([layout.smoothing_length / self.finer])
+
+    def stragglers(self, layout: Any) -> Iterator[str]:
+        """A line where a particle stands far from all others."""
+        yield from ()
+
     def faults(self, layout: Any) -> Iterator[str]:
-        """A line for each formula without a value somewhere."""
-        yield from (f"{self.key}.{name}: {says}" for name, says in self.start.faults())
+        """None."""
+        yield from ()
 
 
-def gas_part(gas: IdealGas, space) -> tuple[type[GasPart], IdealGas, dict[str, Any]]:
-    """The type, the table and what else makes the part of a ``gas`` in the ``space`` of its case."""
+def gas_part(case: Case, key: str, gas: IdealGas) -> tuple[type[GasPart], IdealGas, dict[str, Any]]:
+    """The type, the table and what else makes the part of a ``gas`` at a ``key`` of its case.
+
+    Raises CaseError with a line for each formula without a value somewhere.
+    """
+    space = case.space
     if gas.file is None:
-        start = GasProfile.of(gas, space)
+        start = _sound(case, key, GasProfile.of(gas, space))
         return GasPart, start.settled(), {"finer": gas.finer(space.spacing), "start": start}
     begun = gas.file.begun(space.dimensions)
     if gas.pressure is not None or gas.thermal_energy is not None:
         begun = begun._replace(thermal_energy=None)
-    start = GasProfile.of_file(gas, begun, space.spacing)
+    start = _sound(case, key, GasProfile.of_file(gas, begun, space.spacing))
     return GivenPart, start.settled(), {"begun": begun, "start": start}
+
+
+def _sound(case: Case, key: str, start: GasProfile) -> GasProfile:
+    if wrong := [f"{case.file}: {key}.{name}: {says}" for name, says in start.faults()]:
+        raise CaseError(wrong)
+    return start
 
 
 @dataclass(frozen=True)
@@ -164,11 +185,25 @@ class GivenPart(GasPart):
 
     def quickest(self, layout: Any) -> float:
         """The largest c/h at the start, 1/s."""
-        return float((self.sound / layout.begun[self.number][LENGTH.name]).max())
+        return float((self.sound / self.guessed(layout)).max())
+
+    def guessed(self, layout: Any) -> np.ndarray:
+        """Of each particle."""
+        return layout.begun[self.number][LENGTH.name]
+
+    def stragglers(self, layout: Any) -> Iterator[str]:
+        """The one that reaches farthest, where that is much farther than most do."""
+        lengths = self.guessed(layout)
+        k, most = int(lengths.argmax()), float(np.median(lengths))
+        if lengths[k] > FAR * most:
+            yield (
+                f"{self.key}.file: {self.table.file.file}: row {self.begun.row[k]} stands so far from others "
+                f"that its smoothing length is about {lengths[k]:.3g} m, most have {most:.3g} m: planes are "
+                "as wide as it reaches, so that few ranks share the run; leave it out, or run on few"
+            )
 
     def faults(self, layout: Any) -> Iterator[str]:
-        """A line for the first of its particles outside the domain too."""
-        yield from super().faults(layout)
+        """A line for the first of its particles outside the domain."""
         slack, begun = TOLERANCE * layout.spacing, self.begun
         for d, x in enumerate(begun.position.T):
             low, up = layout.lower[d], layout.upper[d]

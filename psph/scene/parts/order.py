@@ -108,7 +108,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     for name, solid in updated_in(case).items():
         add(UpdatedPart, name, f"solids.{name}", solid, Free(), solid=0)
     for name, gas in case.ideal_gases.items():
-        kind, table, own = gas_part(gas, case.space)
+        kind, table, own = gas_part(case, f"ideal_gases.{name}", gas)
         add(kind, name, f"ideal_gases.{name}", table, Gaseous(), solid=0, **own)
     for number, ((name, solid), made) in enumerate(zip(referred_in(case).items(), solids_in(case))):
         more: dict[str, Any] = {"source": continued(solid)} if flowing else {}
