@@ -250,7 +250,12 @@ def test_yt_reads_snapshots(folder, dimensions):
             assert float(seen.units.base_value / yt.YTQuantity(1, unit).in_mks().d) == pytest.approx(1.0)
 
 
-UNITS = {"UnitLength_in_cm": 100.0, "UnitMass_in_g": 1000.0, "UnitVelocity_in_cm_per_s": 100.0}
+UNITS = {
+    "UnitLength_in_cm": 100.0,
+    "UnitMass_in_g": 1000.0,
+    "UnitVelocity_in_cm_per_s": 100.0,
+    "UnitEnergy_in_cgs": 1e7,
+}
 
 
 def test_paraview_gets_the_runs_colours(folder, dimensions, monkeypatch):
@@ -363,3 +368,67 @@ def test_a_snapshot_of_gases_has_the_sizes_and_the_heat_of_particles(tmp_path):
         assert np.array_equal(part["InternalEnergy"], frame["thermal_energy"])
         assert part["SmoothingLength"][:] == pytest.approx(2.0 * frame["smoothing_length"])
         assert part["SmoothingLength"][:].max() > 1.5 * part["SmoothingLength"][:].min()
+
+
+@pytest.fixture(params=[2, 3])
+def snapshot(request, tmp_path):
+    """A snapshot of gases of two sizes, the frame that it shows, and h of that."""
+    text = GASES.replace("dimensions = 2", f"dimensions = {request.param}")
+    if request.param == 3:
+        text = text.replace("0.0]", "0.0, 0.0]").replace("1.0]", "1.0, 0.4]")
+    (tmp_path / "gases.toml").write_text(text)
+    run(
+        load(tmp_path / "gases.toml", ["time.end=1e-3", "output.frames=1e-3"]),
+        tmp_path / "out",
+        MPI.COMM_SELF,
+    )
+    export(tmp_path / "out", "gadget", [1e-3], tmp_path / "snapshots")
+    [path] = (tmp_path / "snapshots").glob("*.hdf5")
+    return path, Run(tmp_path / "out").frame(-1)
+
+
+def test_pynbody_sees_gases_of_two_sizes(snapshot):
+    """Its smoothing length is the support, as files have it."""
+    pynbody = pytest.importorskip("pynbody", reason="the extra `readers` is not installed")
+    path, frame = snapshot
+    seen = pynbody.load(str(path)).gas
+    for name, field in (("rho", "density"), ("u", "thermal_energy"), ("iord", "id")):
+        assert np.array_equal(seen[name], frame[field]), name
+    assert np.array_equal(seen["pos"], padded(frame["position"]))
+    h = np.asarray(seen["smooth"])
+    assert h == pytest.approx(2.0 * frame["smoothing_length"], rel=1e-15)
+    assert h.max() > 1.5 * h.min()
+    assert seen["u"].units.ratio("m**2 s**-2") == pytest.approx(1.0)
+
+
+def test_yt_sees_gases_of_two_sizes(snapshot):
+    yt = pytest.importorskip("yt", reason="the extra `readers` is not installed")
+    yt.set_log_level("error")
+    path, frame = snapshot
+    data = yt.load(str(path), bounding_box=[[-1.0, 3.0]] * 3, unit_base=UNITS).all_data()
+    row, order = np.argsort(data["PartType0", "ParticleIDs"].astype(int)), np.argsort(frame["id"])
+    for field, name, unit in (
+        ("SmoothingLength", "smoothing_length", "m"),
+        ("Density", "density", "kg/m**3"),
+        ("InternalEnergy", "thermal_energy", "m**2/s**2"),
+    ):
+        times = 2.0 if field == "SmoothingLength" else 1.0
+        seen = data["PartType0", field].to(unit).d[row]
+        assert seen == pytest.approx(times * frame[name][order], rel=1e-6), field
+
+
+def test_sarracen_sums_the_density_of_gases_of_two_sizes(snapshot):
+    """Its own interpolation, by the cubic spline, with psph's h and masses, has the density of the particles."""
+    sarracen = pytest.importorskip("sarracen", reason="the extra `readers` is not installed")
+    path, frame = snapshot
+    if frame["position"].shape[1] == 3:
+        pytest.skip("it is asked in a plane")
+    with h5py.File(path) as file:
+        mass = file["PartType0/Masses"][:]
+    x, y = frame["position"].T
+    columns = {"x": x, "y": y, "rho": frame["density"], "m": mass, "h": frame["smoothing_length"]}
+    seen = sarracen.SarracenDataFrame(columns).sph_interpolate("rho", x_pixels=40, y_pixels=20)
+    middle = seen[8:12]
+    assert middle[:, 8:12] == pytest.approx(1.0, rel=0.03) and middle[:, 28:32] == pytest.approx(
+        4.0, rel=0.03
+    )
