@@ -3,34 +3,12 @@
 import numpy as np
 import pytest
 
+from psph.lab.bench.gravity import ACCURACY, by_tree, errors, even, evrard, plummer, pulls, rows_of
 from psph.particles import octree as octree_room
 from psph.particles.octree import octree
 from psph.physics.self_gravity import softened_by_both
 from psph.simulation.direct_sum import DirectSum
-from psph.simulation.masses import ID, MASS, OLD, PLACE, WHOLE, WIDTH, Pulled
-from psph.simulation.tree_sum import TreeSum
-
-ACCURACY = 0.003
-"""The default of physics.self_gravity.accuracy."""
-
-
-def rows_of(place: np.ndarray, mass=None) -> np.ndarray:
-    """Rows as ranks exchange them, of particles at ``place`` (n, 3), together 1 kg unless said."""
-    rows = np.zeros((len(place), WIDTH))
-    rows[:, ID], rows[:, PLACE] = np.arange(len(place)), place
-    rows[:, MASS] = 1.0 / max(len(place), 1) if mass is None else mass
-    return rows
-
-
-def pulls(one, rows, columns=None) -> np.ndarray:
-    """Pull (3, n) and half of the potential (n,) by a sum, of some ``columns`` or of all; NaN elsewhere."""
-    columns = np.arange(len(rows)) if columns is None else columns
-    found, whole = np.full((4, len(rows)), np.nan), np.zeros((3, len(rows)))
-    places = tuple(np.ascontiguousarray(rows[:, PLACE].T))
-    both = tuple(whole) if rows[:, WHOLE].any() else None
-    one.renew(rows, Pulled(columns, rows[columns, ID], places, tuple(found[:3]), both, found[3]))
-    found[:3] += whole
-    return found
+from psph.simulation.masses import WHOLE
 
 
 def with_sizes(rows, reach) -> np.ndarray:
@@ -38,44 +16,11 @@ def with_sizes(rows, reach) -> np.ndarray:
     return np.hstack([rows, np.asarray(reach)[:, None]])
 
 
-def by_tree(rows, reach, accuracy=ACCURACY, columns=None):
-    """By a tree that knows the pulls of a step before, and that tree."""
-    tree = TreeSum(1.0, reach, accuracy)
-    rows[:, OLD] = 0.0
-    rows[:, OLD] = np.sqrt((pulls(tree, rows)[:3] ** 2).sum(axis=0))
-    return pulls(tree, rows, columns), tree
-
-
-def directions(n, rng):
-    x = rng.normal(size=(n, 3))
-    return x / np.linalg.norm(x, axis=1)[:, None]
-
-
-def plummer(n, rng):
-    """ρ ~ (1 + r²)^(−5/2)."""
-    return directions(n, rng) / np.sqrt(rng.uniform(0.0, 0.999, n) ** (-2 / 3) - 1.0)[:, None]
-
-
-def even(n, rng):
-    """A ball of one density."""
-    return directions(n, rng) * rng.random(n)[:, None] ** (1 / 3)
-
-
-def evrard(n, rng):
-    """ρ ~ 1/r."""
-    return directions(n, rng) * rng.random(n)[:, None] ** (1 / 2)
-
-
 def clumps(n, rng):
     """Two small ones, far apart and far from the origin."""
     place = 0.1 * plummer(n, rng) + 1000.0
     place[n // 2 :, 0] += 50.0
     return place
-
-
-def errors(found, exact) -> np.ndarray:
-    """|δa|/|a| of each particle."""
-    return np.linalg.norm(found[:3] - exact[:3], axis=0) / np.linalg.norm(exact[:3], axis=0)
 
 
 @pytest.mark.parametrize("cloud", [plummer, even, evrard, clumps])
