@@ -21,7 +21,7 @@ from psph.acts import FLUIDS, acts_on
 from psph.composition.terms import displacement, push, radial, shear
 from psph.fields import filled
 from psph.physics.damping.acoustic import ByL, CorrectedDamper, VolumeDamper
-from psph.physics.damping.reconstructed import BesideLinearFlow
+from psph.physics.damping.reconstructed import DampingToEdges
 from psph.physics.fluid.apparent import ApparentFriction, CentralApparentFriction, FluidAlone
 from psph.physics.fluid.correction import VolumeCorrection
 from psph.physics.fluid.friction import Apparent, CorrectedRub, Rub
@@ -96,7 +96,7 @@ def in_a_scene(effect, dim):
         ),
         "VolumeBackground": lambda: VolumeBackground(3000.0),
         "VolumeDamper": lambda: VolumeDamper(0.3, Mirroring(Steady((None,) * dim)), ByL()),
-        "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4, 0.2),
+        "ReconstructedDamping": lambda: DampingToEdges(0.3, 1e-4, 0.2),
         "SurfaceTension": lambda: TensionOfOne(0.1, 0.1, BLUNT, 1.0),
         "TensionAmong": lambda: AMONG,
         "ContactLine": lambda: HeldByWalls(0.1, BLUNT, 1.0),

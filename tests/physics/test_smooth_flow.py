@@ -12,7 +12,7 @@ from physics.test_conservation import potential_of_unequal
 from psph.case import CaseError, load
 from psph.physics.damping.diffusion import BesideSmoothDensity, DensityDiffusion, TankDiffusion
 from psph.physics.damping.matter import SeveralFluids
-from psph.physics.damping.reconstructed import BesideLinearFlow, EndingAtOthers, Whole
+from psph.physics.damping.reconstructed import BesideLinearFlow, DampingToEdges, EndingAtOthers, Whole
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
 from psph.physics.fluid.viscosity import PairDamping
@@ -60,14 +60,15 @@ def test_the_rate_of_strain_fades_where_neighbours_are_in_a_line():
     assert np.abs(sums_of(BesideLinearFlow(ALPHA, 0.0), p, 0)).max() < 1e-9
 
 
-def test_walls_tell_how_neighbours_lie_and_no_rate_of_strain():
-    p, _, _ = linear_flow(crowd(2), 2)
-    walls = p._replace(is_fluid=np.append(np.ones(4), np.zeros(8)))
-    alone = p._replace(
-        mass=np.append(p.mass[:4], np.zeros(8)), specific_volume=np.append(p.specific_volume[:4], np.zeros(8))
-    )
-    beside, without = (np.array(sums_of(BesideLinearFlow(ALPHA, 0.0), q, 3)) for q in (walls, alone))
-    assert 0.0 < np.linalg.norm(beside) < np.linalg.norm(without)
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_walls_are_as_nothing_to_the_rate_of_strain(dim):
+    p, _, upper = linear_flow(crowd(dim), dim)
+    walls = p._replace(is_fluid=np.append(np.ones(8), np.zeros(4)))
+    walls = walls._replace(velocity=tuple(np.append(u[:8], 0.0 * u[8:]) for u in p.velocity))
+    found = sums_of(DampingToEdges(ALPHA, 0.0), walls, 3)[: len(upper)]
+    assert found == pytest.approx([part[3] for part in upper], rel=1e-9)
+    all_flow = sums_of(BesideLinearFlow(ALPHA, 0.0), walls._replace(is_fluid=np.ones(12)), 3)
+    assert found != pytest.approx(all_flow, rel=0.1)  # the control
 
 
 def test_other_fluids_are_as_nothing_to_the_rate_of_strain():
@@ -75,9 +76,19 @@ def test_other_fluids_are_as_nothing_to_the_rate_of_strain():
     apart = p._replace(rest_density=np.append(np.full(6, 1000.0), np.full(6, 500.0)))
     apart = apart._replace(velocity=tuple(np.append(u[:6], 9.0 * u[6:]) for u in apart.velocity))
     apart = apart._replace(wave_speed=np.full(12, C))
-    found = sums_of(BesideLinearFlow(ALPHA, 0.0, 0.0, OTHERS), apart, 3)
+    found = sums_of(DampingToEdges(ALPHA, 0.0, 0.0, OTHERS), apart, 3)[:3]
     assert found == pytest.approx([part[3] for part in upper], rel=1e-9)
-    assert found != pytest.approx(sums_of(BesideLinearFlow(ALPHA, 0.0), apart, 3), rel=0.1)
+    assert found != pytest.approx(sums_of(DampingToEdges(ALPHA, 0.0), apart, 3)[:3], rel=0.1)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_a_fluid_knows_the_normal_of_the_wall_it_is_at(dim):
+    p = crowd(dim)._replace(is_fluid=np.append(np.ones(11), np.zeros(1)))  # one wall particle: it is there
+    facing = np.array(sums_of(DampingToEdges(ALPHA, 0.0), p, 3)[-dim:])
+    towards = np.array([x[3] - x[11] for x in p.position])
+    assert facing == pytest.approx(towards / np.linalg.norm(towards), rel=1e-9)
+    assert not np.any(sums_of(DampingToEdges(ALPHA, 0.0), p, 11)[-dim:])  # a wall itself has none
+    assert not np.any(sums_of(DampingToEdges(ALPHA, 0.0), crowd(dim), 3)[-dim:])
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
@@ -114,15 +125,35 @@ def test_each_pair_only_loses_energy_whatever_the_strain(dim):
     "is_fluid, images, unfelt", ((0.0, Whole(), 0.02), (0.0, OTHERS, 0.02), (1.0, OTHERS, 0.1))
 )
 def test_a_wall_or_another_fluid_damps_what_comes_fast_and_nothing_else(is_fluid, images, unfelt):
-    p = view()._replace(is_fluid=np.array([1.0, is_fluid]), strain=tuple(np.full(2, 9.0) for _ in range(3)))
-    p = p._replace(sound_speed=np.array([C, 1.2 * C]))  # the slower one counts
-    i, j, pair = pair_of(p, 0, 1)
-    effect, plain = BesideLinearFlow(ALPHA, 0.0, 0.0, images), PairDamping(ALPHA)
+    i, j, pair = beside(is_fluid, lambda x: x)
+    effect, plain = DampingToEdges(ALPHA, 0.0, 0.0, images), PairDamping(ALPHA)
     for speed in (3.0 * C, 0.13 * C, 0.09 * C, 0.03 * C, 0.019 * C, 0.0, -0.5 * C):  # of approach
-        moving = pair._replace(u_dot_x=-speed * pair.r)
+        u_ij = tuple(-speed * x / pair.r for x in pair.x_ij)
+        moving = pair._replace(u_ij=u_ij, u_dot_x=-speed * pair.r)
         felt = max(speed - unfelt * C, 0.0)
         expected = plain.radial(i, j, pair._replace(u_dot_x=-felt * pair.r))
         assert effect.radial(i, j, moving) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+def test_what_slides_along_a_wall_does_not_approach_it():
+    """The control: the same approach of the pair, along the normal."""
+    effect, sliding = DampingToEdges(ALPHA, 0.0), (-1.7 * C, 1.1 * C)
+    i, j, pair = beside(0.0, lambda x: (sliding[1], -sliding[0]))
+    towards = np.sign(sliding[0] * pair.x_ij[0] + sliding[1] * pair.x_ij[1])
+    u_ij = tuple(-towards * u for u in sliding)
+    moving = pair._replace(u_ij=u_ij, u_dot_x=sum(u * x for u, x in zip(u_ij, pair.x_ij)))
+    assert moving.u_dot_x < -0.1 * C * pair.r and effect.radial(i, j, moving) == 0.0
+    i, j, _ = beside(0.0, lambda x: x)
+    assert abs(effect.radial(i, j, moving)) > 0.0
+
+
+def beside(is_fluid, normal):
+    """A fluid particle and another, and their pair: the first ends at what has this normal, by their distance."""
+    p = view()._replace(is_fluid=np.array([1.0, is_fluid]), strain=tuple(np.full(2, 9.0) for _ in range(3)))
+    p = p._replace(sound_speed=np.array([C, 1.2 * C]))  # the slower one counts
+    x_ij = pair_of(p, 0, 1)[2].x_ij
+    n = np.array(normal(x_ij)) / np.linalg.norm(normal(x_ij))
+    return pair_of(p._replace(facing=tuple(np.array([one, -is_fluid * one]) for one in n)), 0, 1)
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)

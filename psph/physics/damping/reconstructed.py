@@ -2,10 +2,11 @@
 
 from typing import Annotated, Any, NamedTuple
 
+import numpy as np
 from pydantic import Field
 
 from psph.engine.jit import call_by_type
-from psph.fields import SYMMETRIC, StrainRate
+from psph.fields import SYMMETRIC, VECTOR, StrainRate, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.physics.damping.matter import FluidsUnderTension, Matter, SeveralFluids, alike, matter_of
@@ -13,7 +14,10 @@ from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
 from psph.physics.fluid.viscosity import braking_step, inverse_square, lighter, slower
-from psph.vectors import add, dot, times
+from psph.vectors import add, dot, scale, subtract, times, zero_like
+
+STRAIN = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC, image=StrainRate)
+FACING = Declared("facing", "1", "unit normal of what a fluid ends at, 0 without", VECTOR, image=Turned)
 
 NEAR = 0.7
 """Distance in spacings below which two particles are in disorder, and all of their motion is damped."""
@@ -21,9 +25,11 @@ NEAR = 0.7
 AT_WALLS = 0.02
 """Speed of approach over the speed of sound that a wall does not damp."""
 
-
 AT_OTHERS = 0.1
 """The same of another fluid: pairs of rows that slide along each other approach at up to their difference."""
+
+NO_NORMAL = 1e-12
+"""Square of h times a sum over what the fluid ends at, below which there is none."""
 
 
 class Whole(NamedTuple):
@@ -33,9 +39,9 @@ class Whole(NamedTuple):
         """1 where j flows on with i, else 0."""
         return j.is_fluid
 
-    def lies(self, i, j):
-        """1 where j counts as a part of what is around i, else 0."""
-        return 1.0
+    def is_other(self, i, j):
+        """1 where i and j are fluids that part, else 0."""
+        return 0.0
 
 
 class EndingAtPlanes(NamedTuple):
@@ -48,7 +54,7 @@ class EndingAtPlanes(NamedTuple):
         """1 where j flows on with i, else 0."""
         return where(i.strength * j.strength < 0.0, 0.0, j.is_fluid)
 
-    lies = Whole.lies
+    is_other = Whole.is_other
 
 
 class EndingAtOthers(NamedTuple):
@@ -61,19 +67,13 @@ class EndingAtOthers(NamedTuple):
         """1 where j flows on with i, else 0."""
         return j.is_fluid * alike(self.matter, i, j)
 
-    def lies(self, i, j):
-        """1 where j counts as a part of what is around i, else 0."""
-        return 1.0 - i.is_fluid * j.is_fluid * (1.0 - alike(self.matter, i, j))
+    def is_other(self, i, j):
+        """1 where i and j are fluids that part, else 0."""
+        return i.is_fluid * j.is_fluid * (1.0 - alike(self.matter, i, j))
 
 
-flows, lies = call_by_type("flows"), call_by_type("lies")
+flows, is_other = call_by_type("flows"), call_by_type("is_other")
 """(images, i, j) → 1 or 0: see :class:`Whole`."""
-
-
-@helper
-def unfelt(images, i, j):
-    """The speed of approach that what does not flow on with i does not damp, m/s."""
-    return (AT_WALLS + (AT_OTHERS - AT_WALLS) * (1.0 - lies(images, i, j))) * slower(i, j)
 
 
 def images_of(scene: Facts):
@@ -84,6 +84,35 @@ def images_of(scene: Facts):
     return EndingAtOthers(matter) if isinstance(matter, SeveralFluids | FluidsUnderTension) else Whole()
 
 
+@helper
+def along_pair(effect, felt, i, j, pair):
+    """Coefficient of x_ij in the acceleration by a ``felt`` s′ of u_ij·x_ij, m²/s: 1/s²."""
+    alpha = effect.alpha + effect.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
+    strength = alpha * i.smoothing_length * slower(i, j) * (i.specific_volume * lighter(i, j))
+    spread = inverse_square(pair, i.smoothing_length)
+    return strength * j.specific_volume * (felt * spread) * pair.m_dw_r
+
+
+@helper
+def beside_flow(effect, i, j, pair):
+    """u_ij·x_ij less what the linear flow around has of it, m²/s."""
+    s = pair.u_dot_x
+    g = 0.5 * dot(pair.x_ij, times(add(i.strain, j.strain), pair.x_ij))
+    g = min(max(g, min(s, 0.0)), max(s, 0.0))
+    return s - where(pair.r2 > effect.near2, g, 0.0)
+
+
+@helper
+def come_fast(images, i, j, pair):
+    """The part of u_ij·x_ij, m²/s, that what does not flow on with i damps: the approach along its normal, or
+    along the pair where that is slower, in excess of 0.02 c, of another fluid 0.1 c.  What slides along it
+    does not approach it."""
+    normal = subtract(i.facing, j.facing)
+    s = dot(pair.u_ij, normal) * dot(pair.x_ij, normal) / max(dot(normal, normal), NO_NORMAL)
+    unfelt = (AT_WALLS + (AT_OTHERS - AT_WALLS) * is_other(images, i, j)) * slower(i, j)
+    return min(max(s, pair.u_dot_x) + unfelt * pair.r, 0.0)
+
+
 class ReconstructedDamping(NamedTuple):
     """Numerical friction along a pair, on its motion relative to the linear flow around: it damps disorder.
 
@@ -91,13 +120,13 @@ class ReconstructedDamping(NamedTuple):
     <psph.physics.fluid.viscosity.PairDamping>`, with s′ = s − g for its s = u_ij·x_ij: the flow that is
     linear between the two, g = ½ x_ij·(E_i + E_j)·x_ij clipped between 0 and s, is not felt, so that
     0 ≤ s′/s ≤ 1 and each pair only loses energy; g = 0 where r < 0.7 dx.  E_i = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹)
-    is the rate of strain of the step before: the sum over fluid neighbours, M = −Σ_j V_j x_ij ∇W_ijᵀ over all
-    of them, so that it is exact for a linear flow up to a free surface, and smaller beside a wall.
-    Frontiere, Raskin & Owen (2017), J. Comput. Phys. 332, 160, for a viscosity on approach.  In disorder and
-    at a surface, as :class:`LocalPotential <psph.physics.order.potential.LocalPotential>` sees it with
-    t = 0.2, α rises to ``in_disorder`` where that is larger: psph's own.  A wall damps what approaches it at
-    more than 0.02 c, the excess alone, and nothing else; so does a fluid of another density, at 0.1 c, and
-    counts in no sum.  It conserves momentum and angular momentum.
+    is the rate of strain of the step before, M = −Σ_j V_j x_ij ∇W_ijᵀ, both over fluid neighbours: exact for
+    a linear flow up to a free surface and a wall.  Frontiere, Raskin & Owen (2017), J. Comput. Phys. 332,
+    160, for a viscosity on approach.  In disorder and at a surface, as :class:`LocalPotential
+    <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to ``in_disorder`` where that
+    is larger: psph's own.  A wall damps what approaches it along its normal at more than 0.02 c, the excess
+    alone, and nothing else; so does a fluid of another density, at 0.1 c.  It conserves momentum and angular
+    momentum.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -113,7 +142,10 @@ class ReconstructedDamping(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows the spacing."""
         more = max(self.in_disorder - self.alpha, 0.0)
-        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2, more, images_of(scene))
+        images = images_of(scene)
+        ends = isinstance(images, EndingAtPlanes | EndingAtOthers) or not _all_flows(scene)
+        form = DampingToEdges if ends else BesideLinearFlow
+        return form(self.alpha, (NEAR * scene.spacing) ** 2, more, images)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -121,11 +153,16 @@ class ReconstructedDamping(NamedTuple):
         yield from needs_correction(physics)
 
 
+def _all_flows(scene: Facts) -> bool:
+    """Whether all particles are of fluids."""
+    return all(one.is_fluid for one in scene.species)
+
+
 class BesideLinearFlow(NamedTuple):
     """Numerical friction along a pair, on its motion relative to the linear flow around: it damps disorder.
 
-    The form of :class:`ReconstructedDamping` in a scene; ``near2`` is (0.7 dx)², m², ``more`` what α gains
-    in disorder; ``images`` say what a mirror shows.
+    The form of :class:`ReconstructedDamping` where all particles flow on with each other; ``near2`` is
+    (0.7 dx)², m², ``more`` what α gains in disorder; ``images`` say what a mirror shows.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -136,7 +173,7 @@ class BesideLinearFlow(NamedTuple):
     more: float = 0.0
     images: Any = Whole()
 
-    writes = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC, image=StrainRate)
+    writes = STRAIN
     lagged = True
     slow = True
 
@@ -145,9 +182,9 @@ class BesideLinearFlow(NamedTuple):
         return no_rate(i)
 
     def gather(self, total, i, j, pair):
-        """Take the velocity of a fluid neighbour, and the place of any."""
-        weight, images = rate_weight(j, pair), self.images
-        return take_rate(total, pair, pair.u_ij, weight * flows(images, i, j), weight * lies(images, i, j))
+        """Take the velocity of a fluid neighbour, and its place."""
+        weight = rate_weight(j, pair) * flows(self.images, i, j)
+        return take_rate(total, pair, pair.u_ij, weight, weight)
 
     def finish_value(self, total, i, kernel):
         """E_i, 1/s."""
@@ -155,37 +192,63 @@ class BesideLinearFlow(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        s = pair.u_dot_x
-        g = 0.5 * dot(pair.x_ij, times(add(i.strain, j.strain), pair.x_ij))
-        g = min(max(g, min(s, 0.0)), max(s, 0.0))
-        rest = s - where(pair.r2 > self.near2, g, 0.0)
-        approach = min(s + unfelt(self.images, i, j) * pair.r, 0.0)
-        felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, rest, approach)
-        alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
-        strength = alpha * h * slower(i, j) * (v_i * lighter(i, j))
-        return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r
+        return along_pair(self, beside_flow(self, i, j, pair), i, j, pair)
 
     def longest_step(self, scene):
         """That of :class:`psph.physics.fluid.viscosity.PairDamping`, of the largest α, s."""
         return braking_step(self.alpha + self.more, scene)
 
+
+class DampingToEdges(NamedTuple):
+    """Numerical friction along a pair, on its motion relative to the linear flow around, or on its approach.
+
+    The form of :class:`ReconstructedDamping` where fluids end at walls, bodies or other fluids.
+    """
+
+    conserves = ("momentum", "angular momentum")
+    held = True
+
+    alpha: float
+    near2: float
+    more: float = 0.0
+    images: Any = Whole()
+
+    writes = (STRAIN, FACING)
+    lagged, slow = True, True
+    longest_step = BesideLinearFlow.longest_step
+
+    def start(self, i):
+        """No neighbour yet."""
+        return no_rate(i), zero_like(i.position)
+
+    def gather(self, total, i, j, pair):
+        """Take a fluid neighbour, as :class:`BesideLinearFlow` does, or the place of another."""
+        weight, flowing = rate_weight(j, pair), flows(self.images, i, j)
+        rate = take_rate(total[0], pair, pair.u_ij, weight * flowing, weight * flowing)
+        return rate, add(total[1], scale(pair.x_ij, weight * (1.0 - flowing)))
+
+    def finish_value(self, total, i, kernel):
+        """E_i, 1/s, and the normal of what a fluid ends at; that is 0 elsewhere."""
+        small = NO_NORMAL / (i.smoothing_length * i.smoothing_length)
+        size = i.is_fluid / np.sqrt(max(dot(total[1], total[1]), small))
+        return linear_rate(total[0], i) + scale(total[1], size)
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        within, fast = beside_flow(self, i, j, pair), come_fast(self.images, i, j, pair)
+        felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, within, fast)
+        return along_pair(self, felt, i, j, pair)
+
     def held_apart(self, scene: Facts):
         """Rates of fluid neighbours may serve for several steps.  Those of walls act in each: held, they
         would push on what has bounced off."""
-        if all(one.is_fluid for one in scene.species):
-            return (self,)
-        return InFluid(*self), AtWalls(self.alpha, self.more, self.images)
-
-
-along_pair = helper(BesideLinearFlow.radial)
-"""(effect, i, j, pair) → 1/s², of any pair."""
+        return (self,) if _all_flows(scene) else (InFluid(*self), AtWalls(*self))
 
 
 class InFluid(NamedTuple):
     """Numerical friction along a pair of fluid neighbours, on its motion relative to the linear flow around.
 
-    The part of :class:`BesideLinearFlow` whose rates may serve for several steps.
+    The part of :class:`DampingToEdges` whose rates may serve for several steps.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -196,24 +259,26 @@ class InFluid(NamedTuple):
     more: float
     images: Any
 
-    writes, lagged, slow = BesideLinearFlow.writes, True, True
-    start, gather = BesideLinearFlow.start, BesideLinearFlow.gather
-    finish_value, longest_step = BesideLinearFlow.finish_value, BesideLinearFlow.longest_step
+    writes, lagged, slow = DampingToEdges.writes, True, True
+    start, gather = DampingToEdges.start, DampingToEdges.gather
+    finish_value, longest_step = DampingToEdges.finish_value, DampingToEdges.longest_step
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        return where(i.is_fluid * flows(self.images, i, j) > 0.0, along_pair(self, i, j, pair), 0.0)
+        within = along_pair(self, beside_flow(self, i, j, pair), i, j, pair)
+        return where(i.is_fluid * flows(self.images, i, j) > 0.0, within, 0.0)
 
 
 class AtWalls(NamedTuple):
     """Numerical friction along a pair of a fluid and a wall, where they approach at more than 0.02 c.
 
-    The part of :class:`BesideLinearFlow` that acts in every step.
+    The part of :class:`DampingToEdges` that acts in every step.
     """
 
     conserves = ("momentum", "angular momentum")
 
     alpha: float
+    near2: float
     more: float
     images: Any
 
@@ -221,9 +286,5 @@ class AtWalls(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        approach = min(pair.u_dot_x + unfelt(self.images, i, j) * pair.r, 0.0)
-        felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, 0.0, approach)
-        alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
-        strength = alpha * h * slower(i, j) * (v_i * lighter(i, j))
-        return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r
+        fast = along_pair(self, come_fast(self.images, i, j, pair), i, j, pair)
+        return where(i.is_fluid * flows(self.images, i, j) > 0.0, 0.0, fast)
