@@ -218,6 +218,11 @@ class Kind:
         """What its own rooms ask of a ``plan``, made once (psph.simulation.plan); None: nothing."""
         return None
 
+    def forecast(self, plan: Any) -> Iterator[tuple[str, Any]]:
+        """For `explain`: a line, and the even state (psph.theory.stability.uniform.Settings) that linear
+        theory is to judge behind it, or None."""
+        yield from ()
+
     def lines(self, plan: Any, dt: float) -> Iterator[tuple[str, str]]:
         """For `explain`: lines, each with its topic (``TOPICS``); ``dt`` is the longest step in s."""
         yield from ()

@@ -28,6 +28,9 @@ from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
 from psph.simulation.stages import nothing
 from psph.smoothing import unit_kernel, weight
+from psph.theory.stability import SYMMETRIC
+from psph.theory.stability.lattices import OF_SCENES
+from psph.theory.stability.uniform import Settings
 from psph.work import Rank, Stage, Work
 
 FORCE_LIMIT = 0.25
@@ -173,6 +176,24 @@ class IdealGases(Kind):
         told = (part for part in self.parts if part.start.gas.pressure is not None)
         pressures = {part.number: part.start.pressure for part in told}
         yield Gases(rank, gamma, pressures, rank.plan.planned[self.name], self.least)
+
+    def forecast(self, plan) -> Iterator[tuple[str, Settings | None]]:
+        """The step that sound lets each gas have at rest, and whether its lattice keeps its order."""
+        space, lattice = self.scene.case.space, OF_SCENES[self.scene.dimensions]
+        yield (
+            (
+                f"Stability of gases at the start, on a {lattice} lattice with h held, without friction "
+                "(linear theory, docs/stability.md)"
+            ),
+            None,
+        )
+        for part in self.parts:
+            step = plan.cfl / part.quickest(self.scene.layout)
+            yield f"  {part.name:<20}Δt ≤ {step:.3g} s at rest, cfl h/c where that is shortest", None
+            if part.even:
+                of = part.table
+                state = of.pressure, SYMMETRIC, of.density, of.sound_speed, self.scene.spacing / part.finer
+                yield "", Settings(space.kernel, space.smoothing, lattice, *state)
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What each is, how far particles reach, and what comes before the pass over pairs."""

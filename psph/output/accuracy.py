@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from mpi4py import MPI
 
-from psph.fields import FLUID
+from psph.fields import FLUID, GAS
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.theory.solutions.catalogue import known
@@ -32,7 +32,7 @@ class Accuracy:
         NaN where the exact field is zero everywhere.  The same bits on any number of ranks.
         """
         store = self.domain.store
-        fluid = store.owned_rows("kind") == FLUID
+        fluid = np.isin(store.owned_rows("kind"), (FLUID, GAS))
         x = self.domain.inside(store.owned_rows("position"))[fluid]
         errors: list[float] = []
         for field in self.fields:

@@ -19,7 +19,10 @@ NEAR = 1e-4
 
 def stability_forecast(scene, plan: Plan) -> Iterator[str]:
     """Whether small waves grow at the start, how fast, and which h/dx is stable; nothing where all keep their
-    neighbours."""
+    neighbours.  What kinds of matter say of it comes first."""
+    for kind in plan.matter:
+        for says, settings in kind.forecast(plan):
+            yield says if settings is None else f"  {says:<20}{_verdict(settings)[1]}"
     if not any(part.flows for part in scene.layout.parts):
         return
     lattice, form = OF_SCENES[scene.dimensions], scene.case.physics.pressure_gradient

@@ -20,8 +20,8 @@ def exact_faults(scene: Scene) -> Iterator[str]:
 def _unlike(scene: Scene) -> Iterator[str]:
     """Fluids that are not the one of the solution: what it asks of a fluid is that of the first."""
     fluids = {part.key: part.table for part in scene.layout.parts if part.flows}
-    first = next(iter(fluids))
-    for asked in asked_of_fluid(scene.layout.exact, scene.layout.surroundings):
+    first = next(iter(fluids), "")
+    for asked in asked_of_fluid(scene.layout.exact, scene.layout.surroundings) if fluids else ():
         values = {key: getattr(fluid, asked, 0.0) for key, fluid in fluids.items()}
         muddy = [key for key, fluid in fluids.items() if getattr(fluid, "rheology", None)]
         others = [key for key, value in values.items() if value != values[first]]

@@ -125,6 +125,7 @@ END = {
     "tension/sticking_drop": 0.1,
     "tension/jet": 0.05,
     "gas/sod": 0.05,
+    "gas/shock_tube": 0.05,
     "gas/sedov": 0.01,
     "gas/sedov_octant": 0.001,
     "gas/gresho": 0.05,

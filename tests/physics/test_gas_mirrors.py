@@ -1,12 +1,16 @@
 """Ideal gases before walls and planes of symmetry: mirrors, in which images reach as far as their source."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from cases.measures import CASES
 from drafts import draft, refusal
 from gauging import start
 from physics.test_gas import DENSE, SWITCHED, THIN, means, of
 
-from psph.case import CaseError
+from psph.case import CaseError, load
+from psph.output.accuracy import Accuracy
 from psph.particles.sizes import TooLarge
 from psph.scene import Scene, check
 from psph.theory.riemann import GasState, riemann
@@ -167,6 +171,22 @@ def test_a_shock_comes_back_from_a_wall_as_it_must(tmp_path):
     assert free.max() > 0.6  # without the plane the gas leaves
 
 
+def error_of_density(spacing):
+    """L2 error of the density of `gas/shock_tube` at its end."""
+    case = load(f"{CASES}/gas/shock_tube.toml", [f"space.spacing={spacing}"])
+    scene, simulation = Scene(case), start(case)
+    while simulation.time < 0.2:
+        simulation.step(0.2)
+    simulation.settle_pressure()
+    accuracy = Accuracy(simulation.domain, scene.layout.exact, scene.starts.setting)
+    return dict(zip(accuracy.columns(), accuracy.errors(0.2)))["density_l2"]
+
+
+def test_errors_of_a_shock_tube_fall_with_the_spacing():
+    coarse, fine = error_of_density(0.0125), error_of_density(0.003125)
+    assert coarse < 0.035 and fine < 0.55 * coarse
+
+
 def test_a_still_gas_stays(tmp_path):
     box = "shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }\ndensity = 2.0\npressure = 1.0\n"
     text = GAS.format(dimensions=2, spacing=0.1, space=CLOSED) + f"[ideal_gases.gas]\n{box}"
@@ -189,6 +209,18 @@ def test_weight_holds_gas_on_a_floor(tmp_path):
     x, p = of(simulation, "position", "pressure")
     assert max(speeds) < 0.03  # it would fall at 1 m/s
     assert p == pytest.approx(np.exp(-x[:, 1]), rel=0.05)
+
+
+def test_solutions_of_other_matter_are_refused(tmp_path):
+    own = Path(f"{CASES}/gas/shock_tube.toml").read_text(encoding="utf-8")
+    begin, end = own.index("[exact.shock_tube]"), own.index("[study]")
+    wave = own[:begin] + "[exact.sound_wave]\nspeed = 1.0\nlength = 1.0\n"
+    assert ["is none of ideal gases" in line for line in refusal(tmp_path, wave)] == [True]
+    water = "space = { dimensions = 1, spacing = 0.1, lower = [-1.0], upper = [1.0] }\ntime.end = 1.0\n"
+    water += "[fluids.water]\nshape.box = { lower = [-1.0], upper = [1.0] }\nvelocity = [1.0]\n"
+    assert any(
+        "is of ideal gases, not of fluids" in line for line in refusal(tmp_path, water + own[begin:end])
+    )
 
 
 def test_what_does_not_suit_is_refused(tmp_path):

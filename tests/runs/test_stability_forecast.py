@@ -3,8 +3,10 @@
 import re
 import time
 
+import numpy as np
 import pytest
 from drafts import SQUARE, TANK, draft
+from gauging import start
 from remedies import with_remedies
 
 from psph.case import load
@@ -131,3 +133,49 @@ def test_it_takes_no_time(case):
     begun = time.process_time()
     assert list(stability_forecast(scene, plan))
     assert time.process_time() - begun < (0.5 if scene.dimensions == 2 else 2.0)
+
+
+GAS = """
+scheme = "gas"
+[space]
+dimensions = 2
+spacing = 0.05
+smoothing = 1.2
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.0, 1.0]
+[physics]
+shock_viscosity = { alpha = 0.0, beta = 0.0 }
+heat_conduction = 0.0
+[time]
+end = 10.0
+[ideal_gases.gas]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+density = 1.0
+pressure = 1.0
+"""
+
+
+def grows(tmp_path, *sets):
+    """How fast disorder grows in a gas at rest between 0.5 and 0.8 s, 1/s, without friction."""
+    simulation = start(draft(tmp_path, GAS, "ideal_gases.gas.jitter=1e-5", *sets))
+    speeds = []
+    for end in (0.5, 0.8):
+        while simulation.time < end:
+            simulation.step(end)
+        speeds.append(np.sqrt((simulation.store.shown("velocity") ** 2).sum(axis=1).mean()))
+    return float(np.log(speeds[1] / speeds[0]) / 0.3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("smoothing", [1.2, 1.4])
+def test_a_gas_goes_as_the_forecast_says(tmp_path, smoothing):
+    """Fast at 1.2, slowly at 1.4; the step is that which the run takes."""
+    sets = f"space.smoothing={smoothing}"
+    _, step, verdict = said(draft(tmp_path, GAS, sets))
+    rate = float(re.search(r"= ([\d.e+-]+)/s", verdict)[1])
+    assert grows(tmp_path, sets) == pytest.approx(rate, abs=1.2)
+    assert (rate > 5.0) == (smoothing == 1.2)
+    simulation = start(draft(tmp_path, GAS, sets))
+    simulation.step()
+    assert float(re.search(r"≤ ([\d.e+-]+) s", step)[1]) == pytest.approx(simulation.dt, rel=0.01)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import optimize
 
 from psph.case.study import EXACT
-from psph.fields import FLUID
+from psph.fields import FLUID, GAS
 from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
 from psph.lab.study.numbers import value_in, value_of
@@ -282,7 +282,7 @@ def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:
 
 
 def _fluid(run: Run, field: str) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and values of the fluid in the last frame."""
+    """Positions and values of the fluid, or gas, in the last frame."""
     frame = run.frame(-1, "position", "kind", field)
-    fluid = frame["kind"] == FLUID
+    fluid = np.isin(frame["kind"], (FLUID, GAS))
     return frame["position"][fluid], frame[field][fluid]

@@ -71,6 +71,12 @@ class GasPart(Part):
         return self.start.velocity(position) + (0.0 if more is None else more)
 
     @property
+    def even(self) -> bool:
+        """Whether it starts on a lattice, the same everywhere."""
+        known = self.table.start, self.table.stretch, self.table.file, self.table.jitter
+        return known == ("lattice", None, None, 0.0) and self.one_mass
+
+    @property
     def relaxes(self) -> bool:
         """As its table says."""
         return self.table.start == RELAXED

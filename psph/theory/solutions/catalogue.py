@@ -1,8 +1,9 @@
 """Every exact solution by the name that a case gives it.  A new one is one line here.
 
 A solution is a NamedTuple of its parameters.  Its methods take places ``x`` (n, dim) in m, a time
-in s and a :class:`~psph.theory.solutions.setting.Setting`: ``velocity`` (n, dim) in m/s and ``pressure``
-(n,) in Pa, as far as they are known.  Of :class:`~psph.theory.solutions.setting.Surroundings` alone ``unfit``
+in s and a :class:`~psph.theory.solutions.setting.Setting`: ``velocity`` (n, dim) in m/s, ``pressure``
+(n,) in Pa and ``density`` (n,) in kg/m^d, as far as they are known.  ``of_gases`` is true of those of ideal
+gases.  Of :class:`~psph.theory.solutions.setting.Surroundings` alone ``unfit``
 says what of a case speaks against it, and ``top_speed`` what sound has to be faster than;
 ``up_to_a_constant`` names the fields that a case may raise by any number.
 """
@@ -15,6 +16,7 @@ from psph.theory.solutions.layers import InterfacialWave
 from psph.theory.solutions.setting import Surroundings
 from psph.theory.solutions.still import Hydrostatic
 from psph.theory.solutions.thread import LiquidThread
+from psph.theory.solutions.tube import ShockTube
 from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
 from psph.theory.solutions.waves import SoundWave, StandingWave
 
@@ -30,15 +32,21 @@ SOLUTIONS = {
     "liquid_thread": LiquidThread,
     "hydrostatic": Hydrostatic,
     "elliptic_drop": EllipticDrop,
+    "shock_tube": ShockTube,
 }
 
-FIELDS = ("velocity", "pressure")
+FIELDS = ("velocity", "pressure", "density")
 """Fields that a solution may have."""
 
 
 def known(solution) -> tuple[str, ...]:
     """The fields that a solution has."""
     return tuple(name for name in FIELDS if hasattr(solution, name))
+
+
+def of_gases(name: str) -> bool:
+    """Whether the solution of a ``name`` is one of ideal gases."""
+    return getattr(SOLUTIONS[name], "of_gases", False)
 
 
 OF_A_FLUID = ("density", "viscosity")
