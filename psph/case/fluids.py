@@ -17,7 +17,7 @@ from psph.case.shapes import Shape
 from psph.case.study import EXACT
 from psph.case.tensions import tension_findings
 from psph.physics.catalogue import BUILT_IN, Catalogue
-from psph.theory.solutions.catalogue import SOLUTIONS, known, of_gases
+from psph.theory.solutions.catalogue import SOLUTIONS, is_compressible, known
 
 HYDROSTATIC = "hydrostatic"
 """The pressure at the start of a fluid that is under its own weight."""
@@ -116,7 +116,7 @@ def _exact(case) -> Iterator[Finding]:
     """What a fluid asks of an exact solution that does not have it."""
     solution = next((name for name, value in case.exact if value is not None), None)
     fields = known(SOLUTIONS[solution]) if solution else ()
-    if solution and of_gases(solution) and case.fluids:
+    if solution and is_compressible(solution) and case.fluids:
         yield ("exact", solution), ..., "is of ideal gases, not of fluids; remove this table"
     for name, fluid in case.fluids.items():
         for field in ("velocity", "pressure"):

@@ -16,7 +16,7 @@ from psph.case.schemes import GAS
 from psph.case.shapes import Shape
 from psph.case.snapshots import Snapshot
 from psph.physics.walls.conditions import CONDITIONS, MIRROR
-from psph.theory.solutions.catalogue import of_gases
+from psph.theory.solutions.catalogue import is_compressible
 
 FINEST = 16
 """Of how many parts of the scene's spacing that of a gas may be one, along an axis."""
@@ -240,5 +240,5 @@ def _beside(case) -> Iterator[Finding]:
         if getattr(case, table, None):
             yield (table,), ..., f"nothing is known of {table} in ideal gases; remove the one or the other"
     for name, value in case.exact:
-        if value is not None and not of_gases(name):
+        if value is not None and not is_compressible(name):
             yield ("exact", name), ..., "is none of ideal gases; remove this table"

@@ -2,7 +2,7 @@
 
 A solution is a NamedTuple of its parameters.  Its methods take places ``x`` (n, dim) in m, a time
 in s and a :class:`~psph.theory.solutions.setting.Setting`: ``velocity`` (n, dim) in m/s, ``pressure``
-(n,) in Pa and ``density`` (n,) in kg/m^d, as far as they are known.  ``of_gases`` is true of those of ideal
+(n,) in Pa and ``density`` (n,) in kg/m^d, as far as they are known.  ``compressible`` is true of those of ideal
 gases.  Of :class:`~psph.theory.solutions.setting.Surroundings` alone ``unfit``
 says what of a case speaks against it, and ``top_speed`` what sound has to be faster than;
 ``up_to_a_constant`` names the fields that a case may raise by any number.
@@ -44,9 +44,9 @@ def known(solution) -> tuple[str, ...]:
     return tuple(name for name in FIELDS if hasattr(solution, name))
 
 
-def of_gases(name: str) -> bool:
-    """Whether the solution of a ``name`` is one of ideal gases."""
-    return getattr(SOLUTIONS[name], "of_gases", False)
+def is_compressible(name: str) -> bool:
+    """Whether the solution of a ``name`` is one of gas that is compressed."""
+    return getattr(SOLUTIONS[name], "compressible", False)
 
 
 OF_A_FLUID = ("density", "viscosity")

@@ -33,7 +33,7 @@ class ShockTube(NamedTuple):
     at: of_side("where they meet", "m") = 0.0
     gamma: of_side("adiabatic index γ", "1", gt=1, le=10) = 1.4
 
-    of_gases = True
+    compressible = True
     up_to_a_constant = ()
 
     @property
