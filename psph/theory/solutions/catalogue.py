@@ -2,8 +2,8 @@
 
 A solution is a NamedTuple of its parameters.  Its methods take places ``x`` (n, dim) in m, a time
 in s and a :class:`~psph.theory.solutions.setting.Setting`: ``velocity`` (n, dim) in m/s, ``pressure``
-(n,) in Pa and ``density`` (n,) in kg/m^d, as far as they are known.  ``compressible`` is true of those of ideal
-gases.  Of :class:`~psph.theory.solutions.setting.Surroundings` alone ``unfit``
+(n,) in Pa and ``density`` (n,) in kg/m^d, as far as they are known.  ``compressible`` is true of those of
+ideal gases.  Of :class:`~psph.theory.solutions.setting.Surroundings` alone ``unfit``
 says what of a case speaks against it, and ``top_speed`` what sound has to be faster than;
 ``up_to_a_constant`` names the fields that a case may raise by any number.
 """
