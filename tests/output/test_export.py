@@ -432,3 +432,8 @@ def test_sarracen_sums_the_density_of_gases_of_two_sizes(snapshot):
     assert middle[:, 8:12] == pytest.approx(1.0, rel=0.03) and middle[:, 28:32] == pytest.approx(
         4.0, rel=0.03
     )
+
+
+def test_paraviews_script_has_the_sizes_of_gases(snapshot):
+    script = export(snapshot[0].parents[1] / "out", "paraview").read_text(encoding="utf-8")
+    assert "SIZE, SMOOTHING = 'smoothing_length', 1.4" in script and "0.5 / SMOOTHING" in script

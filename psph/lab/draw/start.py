@@ -14,7 +14,7 @@ MOST = 20_000_000
 
 class AtStart(NamedTuple):
     """What a picture of the start shows: ``frame`` has ``position`` (n, dim) m, ``kind``, ``group``, ``id``
-    (n,) and, as ``values``, the group; ``names`` are those of the groups."""
+    (n,), ``width``, m, and, as ``values``, the group; ``names`` are those of the groups."""
 
     frame: dict[str, np.ndarray]
     names: tuple[str, ...]
@@ -42,6 +42,7 @@ def start_of(layout: Layout) -> AtStart:
         places.append(np.stack([np.broadcast_to(x, held.shape)[sites] for x in grid], axis=1))
         found.append(group[held[sites]])
     groups = np.concatenate(found) if found else np.empty(0, int)
+    finer = np.array([part.finer for part in layout.parts[:first_end]], float)
     free = np.array([part.flows or part.moves_freely for part in layout.parts[:first_end]])
     frame = {
         "position": np.concatenate(places) if places else np.empty((0, layout.dimensions)),
@@ -49,5 +50,6 @@ def start_of(layout: Layout) -> AtStart:
         "group": groups,
         "id": np.arange(len(groups)),
         "values": groups.astype(float),
+        "width": layout.spacing / finer[groups],
     }
     return AtStart(frame, layout.names[:first_end])

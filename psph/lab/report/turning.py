@@ -11,9 +11,14 @@ from psph.output.pictures import style
 from psph.output.pictures.groups import first_whole, wholes_of
 from psph.output.pictures.view import spread
 from psph.output.reader import Run
+from psph.output.sizes import of_sizes, widths
 
 FRAMES, PARTICLES, WALL_PARTICLES = 8, 8000, 4000
 """Frames, particles of a frame, and of its walls, at most: a browser turns them without a pause."""
+
+DOTS, ALIKE = (1.0, 20.0), 0.01
+"""Diameters of the least and the largest dots, and how much of their width particles may differ by that have
+one."""
 
 LINE = {"color": style.INK, "width": 2}
 """Of bodies."""
@@ -30,17 +35,21 @@ def turning(run: Run):
     import plotly.graph_objects as go
 
     shown = spread(len(run.times), FRAMES)
-    frames = [_particles(run, k) for k in shown]
-    fastest = max((speed.max(initial=0.0) for _, speed in frames), default=1.0) or 1.0
+    space = tomllib.loads(run.case_text)["space"]
+    frames = [_particles(run, k, space) for k in shown]
+    fastest = max((speed.max(initial=0.0) for _, speed, _ in frames), default=1.0) or 1.0
+    usual = float(np.median(frames[-1][2])) if len(frames[-1][2]) else 1.0
     rigid = _Rigid(run, shown)
     dimensions = rigid.standing.shape[1]
     kind = go.Scatter3d if dimensions == 3 else go.Scattergl
     size = 3 if dimensions == 3 else 5
 
     def fluid(k: int):
-        places, speed = frames[k]
+        places, speed, width = frames[k]
         colours = {"color": short(speed), "cmin": 0.0, "cmax": fastest, "colorscale": "Viridis"}
-        return _points(kind, places, size, **colours, colorbar={"title": "speed (m/s)"})
+        wide = np.clip(size * width / usual, *DOTS)
+        wide = size if np.ptp(width / usual) < ALIKE else short(wide)
+        return _points(kind, places, wide, **colours, colorbar={"title": "speed (m/s)"})
 
     def walls(places: np.ndarray):
         return _points(kind, places, size - 1, color=GREY, opacity=0.25 if dimensions == 3 else 1.0)
@@ -85,7 +94,7 @@ def turning(run: Run):
     return figure
 
 
-def _points(kind, places: np.ndarray, size: int, opacity: float = 1.0, **marker):
+def _points(kind, places: np.ndarray, size: int | np.ndarray, opacity: float = 1.0, **marker):
     marker |= {"size": size, "opacity": opacity}
     return kind(**_axes(places), mode="markers", marker=marker, hoverinfo="skip")
 
@@ -104,11 +113,12 @@ def _lines(run: Run, k: int) -> np.ndarray | None:
     return np.concatenate([gap, *(part for points, _ in run.lines(k).values() for part in (points, gap))])
 
 
-def _particles(run: Run, k: int) -> tuple[np.ndarray, np.ndarray]:
-    """Places and speeds of all but walls in a frame, no more than a browser takes."""
-    frame = run.frame(k, "position", "velocity", "kind")
+def _particles(run: Run, k: int, space: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places, speeds and widths, m, of all but walls in a frame, no more than a browser takes."""
+    frame = run.frame(k, "position", "velocity", "kind", *of_sizes(run.fields))
     chosen = _some(np.flatnonzero(frame["kind"] != WALL), PARTICLES)
-    return frame["position"][chosen], np.linalg.norm(frame["velocity"][chosen], axis=1)
+    speed = np.linalg.norm(frame["velocity"][chosen], axis=1)
+    return frame["position"][chosen], speed, widths(frame, space)[chosen]
 
 
 class _Rigid:

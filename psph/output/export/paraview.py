@@ -16,6 +16,7 @@ from psph.output.pictures import style
 from psph.output.pictures.names import PARAVIEW
 from psph.output.pictures.quantities import SPEED, quantity
 from psph.output.pictures.scale import scale_of
+from psph.output.sizes import LENGTH
 from psph.output.xdmf import ENDING, index_of
 
 _SCRIPT = '''"""Shows {name} in ParaView 5.10 or newer: paraview --script={script}
@@ -30,6 +31,7 @@ from paraview.simple import *
 
 FRAMES = {frames!r}
 SPACING = {spacing!r}  # m
+SIZE, SMOOTHING = {size!r}, {smoothing!r}  # the field of sizes where they differ, and η
 SPEED = {speed!r}  # m/s, from no colour to full
 PARTS = {parts!r}  # (name, first group, last group, colour or None for the speed, opacity)
 
@@ -50,6 +52,10 @@ for name, first, last, colour, opacity in PARTS:
     shown.SetRepresentationType("Point Gaussian")
     shown.ShaderPreset = "Sphere"
     shown.GaussianRadius = 0.5 * SPACING
+    if SIZE:  # half a smoothing length over η
+        shown.ScaleByArray, shown.UseScaleFunction = 1, 0
+        shown.SetScaleArray = ["POINTS", SIZE]
+        shown.GaussianRadius = 0.5 / SMOOTHING
     shown.Opacity = opacity
     if colour is None:
         ColorBy(shown, ("POINTS", "velocity", "Magnitude"))
@@ -104,6 +110,8 @@ def write_paraview(exported: Exported, folder: Path) -> Path:
         script=PARAVIEW,
         frames=frames,
         spacing=exported.scene.spacing,
+        size=LENGTH if LENGTH in exported.run.fields else None,
+        smoothing=exported.scene.case.space.smoothing,
         speed=_speeds(exported),
         parts=shown,
         camera=_CAMERA if exported.scene.dimensions == 3 else _PLANE,
