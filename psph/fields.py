@@ -123,6 +123,12 @@ class Numbered(NamedTuple):
     shapes = (SCALAR,)
 
 
+class Continued(NamedTuple):
+    """The same, of what goes on behind a plane along which it slides and which bears no weight of it."""
+
+    shapes = (SCALAR,)
+
+
 class Field(NamedTuple):
     """A quantity that each particle carries.
 
@@ -270,7 +276,7 @@ OF_MATERIAL = (
     _fixed("wave_speed", "m/s", "speed of pressure waves in the matter itself; the numerical one in a fluid"),
     _fixed("stress_diffusion", "1", "strength of the spreading of an evolved stress"),
     _fixed("rest_coefficient", "1", "stress across over that along gravity, in level ground at rest"),
-    _fixed("strength", "1", "number of the law that bounds an evolved stress, 0 where none does", Numbered),
+    _fixed("strength", "1", "number of the law that bounds an evolved stress, 0 where none does", Continued),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""
 

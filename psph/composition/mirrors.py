@@ -16,6 +16,7 @@ from numba.core import types
 from psph.engine.jit import overload, register_jitable, tuple_of, unrolled
 from psph.engine.simd import AHEAD
 from psph.fields import (
+    Continued,
     Drifting,
     Field,
     Moving,
@@ -61,10 +62,9 @@ ABSENT = -1
 class Reflection(NamedTuple):
     """An image of a particle stands at ``turn`` x + ``shift``, m, and moves with ``turn_velocity`` v +
     ``shift_velocity``, m/s.  ``turn_strain`` are the signs that the components of a rate of strain take,
-    upper triangle by rows, ``turn_stress`` those of a stress.  ``sticks``: 1 where a plane
-    does, else 0.  ``gravity`` in m/s², None on an axis without:
-    a still column goes on behind the plane.  ``rules``: how each field is turned, by its name (psph.fields),
-    None where it does not say."""
+    upper triangle by rows, ``turn_stress`` those of a stress.  ``sticks``: 1 where a plane does, else 0;
+    ``goes_on``: 1 where none does, nor bears weight, else −1.  ``gravity`` in m/s², None on an axis without:
+    a still column goes on.  ``rules``: how each field is turned (psph.fields), None where it does not say."""
 
     turn: tuple[float, ...]
     shift: tuple[float, ...]
@@ -73,6 +73,7 @@ class Reflection(NamedTuple):
     turn_strain: tuple[float, ...]
     turn_stress: tuple[float, ...]
     sticks: float
+    goes_on: float
     gravity: tuple[float | None, ...]
     rules: Any
 
@@ -99,10 +100,8 @@ def mirrors_of(planes: Sequence[Plane], gravity, reach: float, fields: Iterable[
     without planes."""
     if not planes:
         return None
-    dimensions = len(gravity)
-    beside: list[list[Plane | None]] = [
-        [None, *(plane for plane in planes if plane.axis == d)] for d in range(dimensions)
-    ]
+    axes = range(len(gravity))
+    beside = [[None, *(plane for plane in planes if plane.axis == d)] for d in axes]
     pull = tuple(float(g) or None for g in gravity)
     rule_of = {field.name: field.image and field.image() for field in fields}
     rules = view_of(tuple(rule_of))(**rule_of)
@@ -126,8 +125,9 @@ def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...], rules) -
     strain = _strain_turned(sticking, turn, turn_velocity)
     sliding = np.where(np.isin(np.arange(dimensions), sticking), 1.0, turn)
     stress = np.outer(sliding, sliding)[np.triu_indices(dimensions)]
-    rows = (turn, shift, turn_velocity, shift_velocity, strain, stress)
-    return Reflection(*(tuple(row.tolist()) for row in rows), float(bool(sticking)), gravity, rules)
+    rows = (tuple(row.tolist()) for row in (turn, shift, turn_velocity, shift_velocity, strain, stress))
+    goes_on = -1.0 if sticking or any(gravity[plane.axis] for plane in chosen) else 1.0
+    return Reflection(*rows, float(bool(sticking)), goes_on, gravity, rules)
 
 
 def _strain_turned(sticking: list[int], turn: np.ndarray, turn_velocity: np.ndarray) -> np.ndarray:
@@ -300,6 +300,7 @@ OF_NUMBERS = {
     StillDensity: f"j.{{name}} + {STILL} / {SQUARED}",
     StillVolume: f"j.{{name}} / (1.0 + j.{{name}} * ({STILL} / {SQUARED}))",
     Numbered: "{least} * j.{name}",
+    Continued: "reflection.goes_on * j.{name}",
 }
 """How an image has a number, by the rule that its field declares."""
 

@@ -53,6 +53,11 @@ velocity_gradient = [[1.0, 0.0], [0.0, -1.0]]
 """
 """Lists that hardly last: the wholes and their parts take them at the same steps, to rounding."""
 
+CLAY = CROSS.replace("physics.sound_speed = 20.0\n", "").replace(
+    "[fluids.water]",
+    "[soils.clay]\nyoung = 1e5\npoisson = 0.3\nfriction_angle = 10.0\ncohesion = 500.0\ndensity = 1000.0",
+)
+
 QUARTER = ("space.lower=[0.0, 0.0]", 'space.symmetry=["x.lower", "y.lower"]')
 
 TANK = """
@@ -108,10 +113,12 @@ def shifted(sides):
     return f"perturbations=[{', '.join(each)}]"
 
 
-def test_a_quarter_between_two_planes_is_a_quarter_of_the_whole(tmp_path):
-    """The corner sees images of images; a particle that crosses a plane is followed by its image."""
-    whole = simulated(draft(tmp_path, CROSS, shifted(product(SIDES, SIDES))), 40)
-    part = simulated(draft(tmp_path, CROSS, *QUARTER, shifted([(1.0, 1.0)])), 40)
+@pytest.mark.parametrize("text", (CROSS, CLAY), ids=("water", "clay"))
+def test_a_quarter_between_two_planes_is_a_quarter_of_the_whole(text, tmp_path):
+    """The corner sees images of images; a particle that crosses a plane is followed by its image.  Clay had
+    ended at the planes for its damping, and for the spreading of its stress."""
+    whole = simulated(draft(tmp_path, text, shifted(product(SIDES, SIDES))), 40)
+    part = simulated(draft(tmp_path, text, *QUARTER, shifted([(1.0, 1.0)])), 40)
     expected = sorted_state(whole, quarter=True)
     assert expected.shape == (100, 5)
     assert sorted_state(part) == pytest.approx(expected, abs=1e-7, rel=1e-9)

@@ -45,9 +45,9 @@ class Whole(NamedTuple):
 
 
 class EndingAtPlanes(NamedTuple):
-    """Soil ends at a mirror as at a wall: where it slides on one that holds it, that is no disorder.
+    """Soil ends at a mirror that holds it as at a wall: where it slides on it, that is no disorder.
 
-    Its image moves the other way there; the number of its law is negative (psph.fields.Numbered).
+    Its image moves the other way there; the number of its law is negative (psph.fields.Continued).
     """
 
     def flows(self, i, j):

@@ -61,7 +61,7 @@ by_inverse = by_dimension(
 
 @helper
 def of_one_soil(i, j):
-    """1 between particles of one soil, else 0; an image in a mirror is of none."""
+    """1 between particles of one soil, else 0; an image in a mirror that holds or bears it is of none."""
     weaker, stronger = min(i.strength, j.strength), max(i.strength, j.strength)
     return where(weaker > 0.0, 1.0, 0.0) * where(stronger > weaker, 0.0, 1.0)
 
