@@ -12,6 +12,7 @@ from psph.output.ledger import Ledger
 from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.scene.checks import faults
+from psph.simulation.gas import Unsized
 from psph.simulation.gas_deepening import Deepening
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
@@ -99,6 +100,37 @@ def test_softening_that_follows_sizes_keeps_energy(method, tmp_path, monkeypatch
         assert np.abs(momentum).max() < (1e-15 if method == "direct" else 1e-5)
         monkeypatch.setattr(Deepening, "renew", lambda self: None)
     assert lost[0] < 3e-4 and lost[1] > 5e-3
+
+
+def lost_by(simulation, times: float) -> float:
+    """Part of its energy that a cloud loses to 1 s by steps so many times as long as the limit; infinite where
+    the run ends."""
+    begun = sum(energies(simulation))
+
+    def longer(end):
+        dt, limit = simulation.plan.longest_step(simulation.speed, simulation.acceleration)
+        return times * dt, limit, simulation.time + times * dt
+
+    simulation._next_step = longer
+    try:
+        while simulation.time < 1.0:
+            simulation.step()
+    except Unsized:
+        return math.inf
+    return abs(sum(energies(simulation)) / begun - 1.0)
+
+
+COLD = "physics.self_gravity.softening=0.005", "ideal_gases.cloud.thermal_energy=1e-4"
+
+
+@pytest.mark.parametrize("changes", [(), ("physics.self_gravity.softening=h",), COLD])
+def test_energy_is_kept_at_the_limits_of_the_step_and_not_at_four_times_these(changes, tmp_path):
+    """By signals, by sizes, and where it falls cold by the pull: "self-gravity" sets the first steps of that."""
+    simulation = evrard(tmp_path, *changes)
+    _, first = simulation.plan.longest_step(simulation.speed, simulation.acceleration)
+    assert ("self-gravity" in first) == (changes == COLD or not changes)
+    assert lost_by(simulation, 1.0) < 1e-3
+    assert lost_by(evrard(tmp_path, *changes), 4.0) > 5e-3
 
 
 def test_sizes_soften_gases_alone(tmp_path):
