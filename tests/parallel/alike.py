@@ -143,7 +143,13 @@ def resumed(case, comm, steps, folder):
 
 def nudged(case, comm, steps, folder):
     """The control: the speed of sound differs in its last bit; of soils, which have their own, Young's modulus in
-    its twelfth digit."""
+    its twelfth digit, of gases γ."""
+    if case.ideal_gases:
+        gases = {
+            name: one.model_copy(update={"gamma": one.gamma * (1.0 + 1e-12)})
+            for name, one in case.ideal_gases.items()
+        }
+        return go(begun(case.model_copy(update={"ideal_gases": gases}), comm), steps)
     if case.soils:
         soils = {
             name: one.model_copy(update={"young": one.young * (1.0 + 1e-12)})

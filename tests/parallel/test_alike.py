@@ -12,6 +12,7 @@ import tomli_w
 from invariances.scenes import SCENES, STREAMS
 from jobs import mpirun
 from long import long_but_for, tell
+from parallel import gas_scenes
 from parallel.scenes import FAMILIES, scene
 from remedies import FILES, beside
 
@@ -41,6 +42,15 @@ def test_same_bits_however_it_is_run(name, tmp_path):
         path = tmp_path / f"{seed}.toml"
         path.write_text(scene(FAMILIES[name], 1000 * list(FAMILIES).index(name) + seed))
     all_alike(told(tmp_path, 30), len(seeds))
+
+
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("name", long_but_for((), gas_scenes.FAMILIES))
+def test_gases_of_many_sizes_have_the_same_bits_however_they_are_run(name, tmp_path):
+    """Between mirrors, and in periods."""
+    for seed in range(2):
+        (tmp_path / f"{seed}.toml").write_text(gas_scenes.scene(gas_scenes.FAMILIES[name], seed))
+    all_alike(told(tmp_path, 16), 2)
 
 
 def with_a_gap(tables, axis):
