@@ -348,6 +348,11 @@ def seen_at(view, largest_speed: float):
     return view._replace(**{read: largest_speed}) if read in view._fields else view
 
 
+def with_length(view, h: float):
+    """The view with another smoothing length, m, where a formula reads that."""
+    return view._replace(smoothing_length=h) if "smoothing_length" in view._fields else view
+
+
 def __getattr__(name: str):
     if name.startswith(PREFIX):
         return view_of(tuple(name[len(PREFIX) :].split("__")))

@@ -24,6 +24,7 @@ CATALOGUE = (
     "psph.matter.region:Regions",
     "psph.matter.end:OpenEnds",
     "psph.matter.attraction:Attraction",
+    "psph.matter.refinement:Refinement",
 )
 """Module and class of each kind that psph has, in the order in which they are asked.  They are named here and
 imported when a scene is there, since they stand above all that asks them."""

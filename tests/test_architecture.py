@@ -308,7 +308,7 @@ ROOMS = (
     *(f"scene/{room}" for room in ("answering", "calming", "end")),
     *(
         f"scene/parts/{room}"
-        for room in ("end", "fluid", "gas", "hookean", "order", "rigid", "soil", "solid")
+        for room in ("end", "fluid", "gas", "hookean", "order", "rigid", "soil", "solid", "level")
     ),
     *(
         "physics/rigid/bod",

@@ -8,6 +8,7 @@ from pydantic import Strict
 from psph.case.keys import SIDES, Axis, Table, Text, Vector, key
 from psph.case.physics import physics_table
 from psph.case.profiles import PROFILES
+from psph.case.refined import Refined
 from psph.case.schemes import SCHEMES, STABLE
 from psph.smoothing import KERNELS
 
@@ -53,6 +54,9 @@ class Space(Table):
         None,
         unit="m",
         otherwise="found from the shapes",
+    )
+    refine: Annotated[tuple[Refined, ...], Strict(False)] = key(
+        "regions whose fluid and walls have a finer spacing", ()
     )
     origin: Vector | None = key(
         "origin of the lattice: particles start at origin + (k + 1/2) spacing, k whole",

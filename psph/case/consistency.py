@@ -15,6 +15,7 @@ from psph.case.moved import moved
 from psph.case.numbers import numbered
 from psph.case.placed import Placed
 from psph.case.placing import Placing, Turn
+from psph.case.refined import refined
 from psph.case.schemes import STABLE
 from psph.physics.roles import ROLES
 from psph.physics.walls.slip import NoSlip
@@ -41,6 +42,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         of_tables,
         of_kinds,
         _single,
+        refined,
         _stepped,
         due,
     )

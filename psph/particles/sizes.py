@@ -19,17 +19,18 @@ class TooLarge(Failed):
 class Sizes(NamedTuple):
     """Where sizes differ: the kernel's ``support`` over h, the ``skin`` as a part of it, and the names of the
     fields that hold h, the ``length``, and that of when lists were made, ``listed``; ``between`` is the
-    shortest distance of two mirrors across one axis, m."""
+    shortest distance of two mirrors across one axis, m; until new lists h may grow by ``growth``."""
 
     support: float
     skin: float
     length: str
     listed: str
     between: float = math.inf
+    growth: float = GROWTH
 
     def reach(self, length):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""
-        return (GROWTH + self.skin) * self.support * length
+        return (self.growth + self.skin) * self.support * length
 
     def stray(self, length):
         """Distance, m, by which a particle may stray that was listed with this smoothing ``length``."""

@@ -72,6 +72,14 @@ class Buffered(NamedTuple):
 
     kind = BUFFER
     flows = True
+    ends_fluid = True
+
+
+class Led(NamedTuple):
+    """Particles of a fluid go with those of another size around them (psph.matter.refinement)."""
+
+    kind = BUFFER
+    flows = True
 
 
 class OfItsKind(NamedTuple):
@@ -92,6 +100,11 @@ def is_free(motion) -> bool:
 def flows(motion) -> bool:
     """Whether what moves so is fluid to its neighbours."""
     return getattr(motion, "flows", False)
+
+
+def ends_fluid(motion) -> bool:
+    """Whether what moves so stands behind the end of a fluid."""
+    return getattr(motion, "ends_fluid", False)
 
 
 def goes_free(motion) -> bool:

@@ -9,6 +9,7 @@ from psph.case.parameters import chosen
 from psph.kinds import in_case
 from psph.scene.census import Census, take_census
 from psph.scene.layout import Layout, lay_out
+from psph.scene.levels import Finer, finer_of
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.speeds import Speeds
 from psph.scene.starts import Starts
@@ -51,6 +52,11 @@ class Scene:
         made = ParticleSet.empty(count, self.layout.dimensions, first_id)
         fill(made, self.starts, first, last)
         return made
+
+    @cached_property
+    def finer(self) -> tuple[Finer, ...]:
+        """The scene as each finer level of sizes sees it; none where there is one spacing."""
+        return finer_of(self)
 
     @cached_property
     def tables(self) -> dict[str, Any]:

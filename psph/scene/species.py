@@ -34,7 +34,7 @@ class Species(NamedTuple):
     from 1 on, 0 of what is none, and ``tensions`` in N/m are first its surface tension and then those between
     it and each fluid, in this order; empty where the case tells none; ``wetting`` is the cosine of the angle
     at which surfaces of fluids meet a wall or a body, the mean of those of lines that advance and recede, and
-    ``wetting_range`` half of their difference.
+    ``wetting_range`` half of their difference; ``level`` is that of its size (psph.scene.levels).
     """
 
     name: str
@@ -64,6 +64,7 @@ class Species(NamedTuple):
     wetting: float = 0.0
     one_mass: bool = True
     wetting_range: float = 0.0
+    level: int = 0
 
     @property
     def inertia(self) -> float:

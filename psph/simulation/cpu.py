@@ -26,6 +26,7 @@ from psph.simulation.integrator import (
     settle_given_pressure,
     state_of,
 )
+from psph.simulation.level_loops import loops_of_levels
 from psph.simulation.midway import drift_to_end, kick_to_middle
 from psph.simulation.neighbourhood import Neighbourhood
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
@@ -355,6 +356,9 @@ class Engine:
         held = [s[name] if last and own and name in s else None for name, own in zip(HELD, one.gives)] or NONE
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)), *held)
         rest = None
+        if plan.finer:
+            yield from loops_of_levels(plan, one, self._sums[one.place], s.group, seen, sums)
+            return
         if one.gives_rates and not one.midway and plan.materials.loaded is not None:
             rest = Unloaded(plan.materials.loaded, s.group)
             reductions, written = one.reductions, sums.written

@@ -12,6 +12,7 @@ import numpy as np
 
 from psph.engine.jit import elementwise
 from psph.formula import helper
+from psph.simulation.least_squares import factor, solve
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
 
@@ -123,11 +124,11 @@ def see_fronts(columns, ends, planes, vicinity, listed, flowing, fit, seen):
         seen[n, :] = 0.0
         if fit.square[0, 0] > 0.0:
             seen[n, SEEN], seen[n, NEAR], seen[n, DEPTH] = 1.0, 1.0 - nearer, mean_depth
-            _factor(fit.square)
+            factor(fit.square, FLAT)
             for value in range(fit.right.shape[1]):
                 if value < 2:
                     count = len(fit.share) if value and not planes.open[end] else fit.right.shape[1] - 1
-                    _solve(fit.square, fit.share, count)
+                    solve(fit.square, fit.share, count)
                 for one in range(count):
                     seen[n, FITTED + value] += fit.share[one] * fit.right[one, value]
 
@@ -182,33 +183,3 @@ def _set_terms(axis, dim, x, dx, terms):
         for other in range(one, dim):
             terms[n] = terms[one] * terms[other]
             n += 1
-
-
-@helper
-def _factor(square):
-    """The lower half of ``square`` (n, n) becomes its factors LDLᵀ.  Terms that those before them nearly tell
-    are left out."""
-    total = square[0, 0]
-    for i in range(len(square)):
-        for j in range(i):
-            for k in range(j):
-                square[i, j] -= square[i, k] * square[k, k] * square[j, k]
-            square[i, j] = square[i, j] / square[j, j] if square[j, j] > 0.0 else 0.0
-        for k in range(i):
-            square[i, i] -= square[i, k] * square[k, k] * square[i, k]
-        if square[i, i] <= FLAT * total:
-            square[i, : i + 1] = 0.0
-
-
-@helper
-def _solve(square, share, n):
-    """``share`` (n,) of the least squares f₀ = share·right of the first ``n`` terms: the first row of the
-    inverse of what is ``square`` in factors."""
-    for i in range(n):
-        share[i] = 1.0 if i == 0 else 0.0
-        for j in range(i):
-            share[i] -= square[i, j] * share[j]
-    for i in range(n - 1, -1, -1):
-        share[i] = share[i] / square[i, i] if square[i, i] > 0.0 else 0.0
-        for j in range(i + 1, n):
-            share[i] -= square[j, i] * share[j]

@@ -51,6 +51,8 @@ class Materials(NamedTuple):
     """The row of the pose, 0 without one."""
     bonded_to: np.ndarray
     """The number of what its particles are bonded in, NOT_BONDED where they are not."""
+    others: np.ndarray
+    """For each level of sizes whether a group is of another one (levels, groups)."""
     loaded: np.ndarray | None
     """Whether the push of the fluid alone, or of elastic solids where nothing flows, is summed on its
     particles; None: on none."""
@@ -78,6 +80,7 @@ def materials_of(scene, states: Iterable[Entry], effects: Sequence) -> Materials
     def each(value, dtype=bool) -> np.ndarray:
         return np.array([value(one) for one in species], dtype)
 
+    level = each(lambda one: one.level, np.int64)
     led = each(lambda one: is_prescribed(one.motion) and (flows or one.kind == WALL))
     loaded = led | each(lambda one: one.loaded)
     return Materials(
@@ -91,6 +94,7 @@ def materials_of(scene, states: Iterable[Entry], effects: Sequence) -> Materials
         bearing=each(lambda one: one.bearing),
         given_pressure=each(lambda one: any(is_given_pressure(effect, one) for effect in effects)),
         bonded_to=each(lambda one: NOT_BONDED if one.bonded is None else one.bonded, np.uint8),
+        others=level != np.arange(1 + level.max(initial=0))[:, None],
         loaded=loaded if loaded.any() else None,
         **movement._asdict(),
     )

@@ -122,6 +122,8 @@ class Plan:
     """Fields that frames hold beside those of every frame (output.fields)."""
     steps_held: int
     """For how many steps the rates of friction serve (psph.simulation.paces)."""
+    finer: tuple["Plan", ...] = ()
+    """The same for each finer level of sizes (psph.scene.levels): other numbers, the same code."""
 
     def of(self, name: str) -> Any:
         """The kind of matter of that name, or None."""
@@ -249,7 +251,8 @@ class Plan:
 
     def step_limits(self, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """Every limit of the time step with its name, s."""
-        return step_limits(self, speed, acceleration)
+        for one in (self, *self.finer):
+            yield from step_limits(one, speed, acceleration)
 
 
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
@@ -364,6 +367,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         extremes=extremes,
         kept=kept_in_frames(scene, stored),
         steps_held=hold_for,
+        finer=tuple(make_plan(one, catalogue) for one in scene.finer),
     )
 
 

@@ -95,6 +95,7 @@ END = {
     "coast/pontoon": 0.05,
     "coast/run_up": 0.03,
     "coast/wave_run_up": 0.03,
+    "refined/dam_break": 0.05,
     "ends/open_poiseuille": 0.15,
     "ends/open_channel": 0.15,
     "ends/nozzle": 0.12,

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from psph.engine.jit import call_by_type
 from psph.physics.facts import Facts
+from psph.physics.motion import ends_fluid
 
 
 class NoBuffers(NamedTuple):
@@ -47,4 +48,4 @@ def buffers_of(scene: Facts) -> Buffers:
 
 def open_ended(scene: Facts) -> bool:
     """Whether fluid comes and goes: some of it stands behind an open end."""
-    return any(one.is_fluid and not one.mobile for one in scene.species)
+    return any(ends_fluid(one.motion) for one in scene.species)

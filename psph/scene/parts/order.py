@@ -12,12 +12,13 @@ from psph.case.tensions import tensions_in
 from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
 from psph.physics.gas.state import Gaseous
-from psph.physics.motion import Buffered, Fixed, Free
+from psph.physics.motion import Buffered, Fixed, Free, Led
 from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp, Riding
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.parts.end import Behind, EndPart, behind
 from psph.scene.parts.fluid import FluidPart
 from psph.scene.parts.gas import gas_part
+from psph.scene.parts.level import LevelPart, LevelWall
 from psph.scene.parts.part import Part
 from psph.scene.parts.rigid import BodyPart, WallPart
 from psph.scene.parts.soil import SoilPart
@@ -103,6 +104,18 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
 
     for name, fluid in case.fluids.items():
         add(FluidPart, name, f"fluids.{name}", fluid, Free(), solid=0, tensions=tensions[name])
+    finest = max((one.levels for one in case.space.refine), default=0)
+    fluids, walls = tuple(found), []
+    for level in range(1, 1 + finest):
+        for part in fluids:
+            add(
+                LevelPart,
+                f"{part.name} (level {level})",
+                part.key,
+                part.table,
+                Free(),
+                **_of_level(part, level),
+            )
     for name, soil in case.soils.items():
         add(SoilPart, name, f"soils.{name}", soil, Free(), solid=0)
     for name, solid in updated_in(case).items():
@@ -135,6 +148,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         if wall.condition != MIRROR:
             told = motion_of(wall.motion, gravity) or Fixed()
             add(WallPart, name, f"walls.{name}", wall, told, source=continued(wall))
+            walls.append(found[-1])
     for number, (name, body) in enumerate(case.bodies.items(), FIRST_BODY):
         solid = WALL if referred else number
         add(BodyPart, name, f"bodies.{name}", body, None, source=continued(body), solid=solid)
@@ -146,4 +160,16 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
             table = Behind(end, fluid, shape, filled)
             more = {"source": number, "solid": 0, "tensions": tensions[poured]}
             add(EndPart, f"{name} ({poured})", f"ends.{name}", table, Buffered(), **more)
+    for level in range(1 + finest if finest else 0):
+        for part in walls if level else ():
+            more = {"source": part.source, "level": level, "origin": part.number}
+            add(LevelWall, f"{part.name} (level {level})", part.key, part.table, part.motion, **more)
+        for part in fluids:
+            more = _of_level(part, level) | {"follows": True}
+            add(LevelPart, f"{part.name} (level {level}, follows)", part.key, part.table, Led(), **more)
     return Parts(found)
+
+
+def _of_level(part: Part, level: int) -> dict[str, Any]:
+    """What differs of a fluid's particles of a level of sizes."""
+    return {"source": part.number, "solid": 0, "level": level}

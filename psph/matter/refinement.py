@@ -1,0 +1,153 @@
+"""Regions with finer particles: what they add to a scene (psph.kinds)."""
+
+from collections.abc import Container, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from psph.case.keys import AXES
+from psph.fields import Field
+from psph.kinds import Created, Kind
+from psph.particles.sizes import Sizes
+from psph.scene.lattice import TOLERANCE
+from psph.scene.levels import Levels
+from psph.scene.particles import settled_at
+from psph.scene.parts.level import LevelPart, LevelWall
+from psph.scene.shapes import bounds
+from psph.simulation.levels import DIVIDED, LENGTH, Resizing
+from psph.work import Rank, Stage, Work
+
+SKIN = 0.16
+"""Part of the support by which lists reach farther at the least: how far each particle strays counts here,
+not how far two come nearer."""
+
+FIELDS = (
+    Field(LENGTH, "m", "smoothing length of its level of sizes"),
+    Field(DIVIDED, "1", "1 where finer particles stand in its place, else 0"),
+)
+
+
+class Refinement(Kind):
+    """Fluids and walls with finer particles in some regions."""
+
+    name = "refine"
+    keeps_energy = False
+    moves = True
+    fields = FIELDS
+
+    @classmethod
+    def is_in(cls, case) -> bool:
+        """Whether a case has such regions."""
+        return bool(case.space.refine)
+
+    @property
+    def bears_held(self) -> bool:
+        """Not: who follows has no history of rates."""
+        return False
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """Of whom it leads."""
+        return ("mass",)
+
+    @property
+    def sizes(self) -> Sizes:
+        """By the level of each particle."""
+        skin = max(SKIN, self.scene.case.neighbours.skin)
+        return Sizes(self.scene.kernel.support, skin, LENGTH, LENGTH, growth=1.0)
+
+    @property
+    def levels(self) -> Levels:
+        """Of the scene."""
+        return Levels(self.scene.layout)
+
+    def starts(
+        self, fields: Container[str], species: np.ndarray, position: np.ndarray
+    ) -> Iterator[tuple[str, np.ndarray]]:
+        """The smoothing length of their level."""
+        level = np.array([one.level for one in self.scene.species])[species]
+        yield LENGTH, (self.scene.layout.smoothing_length * 0.5**level)[:, None]
+
+    def particles(self) -> Created | None:
+        """Finer ones, on no sites of the lattice."""
+        layout = self.scene.layout
+        parts = [
+            part
+            for part in layout.parts
+            if isinstance(part, LevelPart | LevelWall) and part.number in layout.placed
+        ]
+        if not parts:
+            return None
+        number = np.repeat(
+            [part.number for part in parts], [len(layout.placed[part.number]) for part in parts]
+        )
+        position = np.concatenate([layout.placed[part.number] for part in parts])
+        found = settled_at(self.scene.starts, np.arange(len(number)), number, position)
+        return Created(number, found.position, found.velocity, found.density, {}, of_parts=True)
+
+    def stages(self) -> Mapping[str, Stage]:
+        """Who leads and follows is found before new lists are made, and who follows before the sums."""
+        return {"renew_lists": Stage(_renew, _begin), "sum_over_pairs": Stage(_impose, _impose)}
+
+    def renews(self, passes: Sequence) -> tuple[str, ...]:
+        """The state of who follows."""
+        return ("velocity", "predicted_velocity", "density", "pressure", "specific_volume")
+
+    def work(self, rank: Rank) -> Iterator[Work]:
+        """The levels on a rank."""
+        yield Resizing(rank)
+
+    def faults(self) -> Iterator[str]:
+        """Regions outside the domain, and those thinner than what is around them sees."""
+        layout = self.scene.layout
+        for n, one in enumerate(layout.case.space.refine):
+            lower, upper = bounds(one.shape)
+            thin = min(high - low for low, high in zip(lower, upper))
+            if thin < layout.support:
+                yield (
+                    f"space.refine[{n}].shape: {thin:.4g} m thick, less than the {layout.support:.4g} m that "
+                    "particles around it see; make it thicker, or give a smaller space.spacing to all"
+                )
+            ends = zip(lower, upper, layout.lower, layout.upper)
+            if any(high <= least or low >= most for low, high, least, most in ends):
+                yield f"space.refine[{n}].shape: outside the domain, where nothing is; move it into the fluid"
+
+    def warnings(self) -> Iterator[str]:
+        """Borders between sites, where at the start some fluid is there twice or not at all."""
+        layout = self.scene.layout
+        for n, one in enumerate(layout.case.space.refine):
+            sides = zip(AXES, layout.lattice.origin, layout.lower, layout.upper, *bounds(one.shape))
+            for axis, origin, least, most, *borders in sides:
+                for at in (x for x in borders if least < x < most):
+                    sites = (at - origin) / layout.spacing
+                    if abs(sites - round(sites)) > TOLERANCE:
+                        yield (
+                            f"space.refine[{n}].shape: its border at {axis} = {at:g} m is not between two "
+                            f"rows; put it at {origin + round(sites) * layout.spacing:g}"
+                        )
+
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
+        """What each level has."""
+        levels = self.levels
+        for level in range(1, levels.count):
+            dx, h, wide = levels.spacing(level), levels.smoothing_length(level), levels.margin(level)
+            yield "reach", f"  level {level}     dx = {dx:g} m, h = {h:g} m, margin {wide:g} m"
+
+
+def _work(simulation):
+    return simulation.engine.of(Refinement.name)
+
+
+def _begin(simulation) -> None:
+    _work(simulation).sort()
+
+
+def _renew(simulation) -> None:
+    with simulation.ledger("skin"):
+        simulation.listed = simulation.neighbourhood.skin.reach()
+    if not simulation.listed:
+        with simulation.ledger("refine"):
+            _work(simulation).sort(simulation.population)
+
+
+def _impose(simulation) -> None:
+    _work(simulation).impose(simulation)

@@ -1,0 +1,136 @@
+"""Where particles are finer: levels of sizes, each with half the spacing of the one before.
+
+Level 0 fills the scene.  Level l fills its region R_l and a margin around it, REACHES supports wide.  In R_l,
+and outside R_{l+1}, its particles move by their own forces; elsewhere they follow those of another level.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from psph.case.keys import AXES
+from psph.moments import normalised
+from psph.scene.forms.make import form_of
+from psph.smoothing import kernel
+
+REACHES = 2.0
+"""Supports of a level between its region and the end of its margin: a particle at the border has neighbours
+all around, and so have these."""
+
+AROUND = 3.0
+"""Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """The levels of sizes of a ``layout``, 0 the coarsest."""
+
+    layout: Any
+
+    @cached_property
+    def count(self) -> int:
+        """How many there are."""
+        return 1 + max((one.levels for one in self.layout.case.space.refine), default=0)
+
+    def spacing(self, level: int) -> float:
+        """dx of a level, m."""
+        return self.layout.spacing * 0.5**level
+
+    def smoothing_length(self, level: int) -> float:
+        """h of a level, m."""
+        return self.layout.smoothing_length * 0.5**level
+
+    def support(self, level: int) -> float:
+        """Radius of the kernel of a level, m."""
+        return self.layout.support * 0.5**level
+
+    def margin(self, level: int) -> float:
+        """How far outside of its region particles of a level are, m: whole spacings of the coarser one."""
+        coarser = self.spacing(level - 1)
+        return math.ceil(REACHES * self.support(level) / coarser - 1e-6) * coarser
+
+    def _around(self, level: int) -> float:
+        """How much larger the region of the next coarser level is than that of a level, m: whole spacings of
+        what is around that, so that sites of both fit."""
+        wide, coarser = self.margin(level) + AROUND * self.support(level - 1), self.spacing(max(level - 2, 0))
+        return math.ceil(wide / coarser - 1e-6) * coarser
+
+    def outside(self, level: int, points: np.ndarray) -> np.ndarray:
+        """How far ``points`` (n, dim) are outside of the region of a level, m (n,); below 0 inside of it."""
+        if not 0 < level < self.count:
+            return np.full(len(points), -np.inf if level == 0 else np.inf)
+        return np.min([self._away(one, level, points) for one in self._refined(level)], axis=0)
+
+    def active(self, level: int, points: np.ndarray) -> np.ndarray:
+        """Whether particles of a level at ``points`` (n, dim) m move by their own forces (n,)."""
+        return (self.outside(level, points) < 0.0) & ~(self.outside(level + 1, points) < 0.0)
+
+    def sites(self, level: int, extra: float = 0.0) -> np.ndarray:
+        """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more."""
+        lattice, points = self.layout.lattice, []
+        within = lattice.within_cell(2**level)
+        wide = self.margin(level) + extra
+        for first, last in lattice.chunks():
+            grid, shape = lattice.grid(first, last), lattice.shape(first, last)
+            middle = np.stack([np.broadcast_to(x, shape).ravel() for x in grid], axis=1)
+            middle = middle[self.outside(level, middle) < wide + self.layout.spacing]
+            fine = (middle[:, None, :] + within[None, :, :]).reshape(-1, middle.shape[1])
+            points.append(fine[self.outside(level, fine) < wide])
+        return np.concatenate(points)
+
+    def held(self, level: int, number: int, extra: float = 0.0) -> np.ndarray | None:
+        """Those of :meth:`sites` that a part of the layout has; None without any."""
+        points = self.sites(level, extra)
+        found = self.layout.held([*points.T], (len(points),)) if len(points) else np.zeros(0)
+        return points[found == number] if (found == number).any() else None
+
+    def kernel(self, level: int):
+        """The smoothing kernel of a level."""
+        space = self.layout.case.space
+        smooths = kernel(space.kernel, self.smoothing_length(level), space.dimensions)
+        return normalised(smooths, self.spacing(level), space.dimensions) if space.normalised else smooths
+
+    def _refined(self, level: int) -> list:
+        return [one for one in self.layout.case.space.refine if one.levels >= level]
+
+    def _away(self, one, level: int, points: np.ndarray) -> np.ndarray:
+        """Distance outside of one region, nearest image, as large as what is finer in it needs."""
+        more = sum(self._around(finer) for finer in range(level + 1, 1 + one.levels))
+        form = form_of(one.shape)
+        away = (form.faces(x).away for x in self._images(points))
+        return np.min([*away], axis=0) - more
+
+    def _images(self, points: np.ndarray) -> Iterator[np.ndarray]:
+        """The points, and their images one period away along each axis that repeats."""
+        found = [points]
+        for d, period in enumerate(self.layout.periods):
+            if period is not None:
+                step = np.zeros(len(AXES[: points.shape[1]]))
+                step[d] = period
+                found += [x + way * step for x in tuple(found) for way in (-1.0, 1.0)]
+        yield from found
+
+
+class Finer:
+    """A scene as effects of a finer ``level`` see it: with another spacing, all else the same."""
+
+    finer = ()
+
+    def __init__(self, scene, levels: Levels, level: int):
+        self._scene = scene
+        self.level, self.spacing = level, levels.spacing(level)
+        self.smoothing_length, self.support = levels.smoothing_length(level), levels.support(level)
+        self.kernel = levels.kernel(level)
+
+    def __getattr__(self, name: str):
+        return getattr(self._scene, name)
+
+
+def finer_of(scene) -> tuple[Finer, ...]:
+    """A ``scene`` as each of its finer levels sees it."""
+    levels = Levels(scene.layout)
+    return tuple(Finer(scene, levels, level) for level in range(1, levels.count))

@@ -1,0 +1,231 @@
+"""Finer particles in a region: still water, sound and a vortex across its border, its books, bits on ranks."""
+
+import numpy as np
+import pytest
+from drafts import draft, refusal
+from gauging import start
+from long import LONG
+from mpi4py import MPI
+from parallel.test_simulation import state
+
+from psph.output.ledger import Ledger
+from psph.runs.setup import compile_ahead, create_particles
+from psph.scene import Scene
+from psph.scene.levels import Levels
+from psph.simulation import levels
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+STILL = """
+space = { dimensions = 2, spacing = 0.05, refine = [
+    { shape.box = { lower = [0.5, 0.0], upper = [1.5, 0.5] }, factor = FACTOR },
+] }
+time.end = 0.1
+physics.gravity = [0.0, -9.81]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.2, -0.2], upper = [2.2, 1.2] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [2.0, 1.2] } }]
+"""
+
+STREAM = """
+time.end = 1.0
+physics.sound_speed = 10.0
+[space]
+dimensions = 2
+spacing = 0.02
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [LENGTH, WIDTH]
+[[space.refine]]
+shape.box = { lower = [LOWER, 0.0], upper = [UPPER, WIDTH] }
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [LENGTH, WIDTH] }
+velocity = [SPEED, 0.0]
+"""
+
+
+def stream(folder, **told):
+    """A stream that repeats along both axes, with a finer part."""
+    text = STREAM
+    for word, value in told.items():
+        text = text.replace(word.upper(), f"{value:g}")
+    return draft(folder, text)
+
+
+def leading(simulation):
+    """Places, velocities, pressures and masses of the fluid that moves by its own forces, and its levels."""
+    simulation.settle_pressure()
+    species = simulation.plan.materials.species
+    group = simulation.store.group[simulation.store.inner]
+    own = np.array([one.is_fluid and one.mobile for one in species])[group]
+    names = "position", "velocity", "pressure", "mass"
+    found = [simulation.store.owned_rows(name)[own] for name in names]
+    return *found, np.array([one.level for one in species])[group[own]]
+
+
+def begun(case, velocity, pressure):
+    """The simulation of a case that begins with a ``velocity`` (n, dim) and ``pressure`` (n,) of places."""
+    scene = Scene(case)
+    plan = make_plan(scene)
+    store = create_particles(scene, plan, MPI.COMM_SELF)
+    x = store.owned_rows("position")
+    for name in ("velocity", "predicted_velocity"):
+        for own, told in zip(store[name], velocity(x).T):
+            own[store.inner] = told
+    c = plan.extremes.sound_speed
+    store["density"][store.inner] = 1000.0 + pressure(x) / c**2
+    return Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+
+
+@pytest.mark.parametrize("factor", [2, pytest.param(4, marks=LONG)])
+def test_still_water_has_no_step_of_pressure_at_the_border(factor, tmp_path):
+    simulation = start(draft(tmp_path, STILL.replace("FACTOR", str(factor))))
+    while simulation.time < 0.1:
+        simulation.step(0.1)
+    x, v, p, m, level = leading(simulation)
+    away = np.max([0.5 - x[:, 0], x[:, 0] - 1.5, x[:, 1] - 0.5], axis=0)
+    near = np.abs(away) < 0.1
+    error = p / 9810.0 - (1.0 - x[:, 1])
+    assert abs(error[near & (away < 0)].mean() - error[near & (away > 0)].mean()) < 1.5e-3
+    assert np.abs(error).max() < 0.01
+    assert np.hypot(*v.T).max() < 0.006  # 0.003 of one spacing
+    assert m.sum() == pytest.approx(2000.0, rel=1e-9)
+    assert set(level) == set(range(factor.bit_length()))
+
+
+def reflected(folder, monkeypatch, order):
+    """What comes back of a pulse of sound, ten spacings wide, that has gone into a finer part, over it."""
+    monkeypatch.setattr(levels, "ORDER", order)
+    case = stream(folder, length=2.0, width=0.2, lower=1.0, upper=2.0, speed=0.0)
+
+    def pulse(x):
+        return 0.01 * np.exp(-0.5 * ((x[:, 0] - 0.5) / 0.1) ** 2)
+
+    simulation = begun(case, lambda x: np.stack([pulse(x), 0 * pulse(x)], axis=1), lambda x: 1e4 * pulse(x))
+    while simulation.time < 0.08:
+        simulation.step(0.08)
+    x, v, p, _, _ = leading(simulation)
+    back = 0.5 * (v[:, 0] - p / 1e4)
+    rows = np.round(x[:, 0], 3)
+    return max(abs(back[rows == row].mean()) for row in np.unique(rows)) / 0.01
+
+
+def test_sound_passes(tmp_path, monkeypatch):
+    assert reflected(tmp_path, monkeypatch, order=2) < 0.004
+    assert reflected(tmp_path, monkeypatch, order=0) > 0.006  # the control
+
+
+def kept_of_a_vortex(folder, monkeypatch, order):
+    """Energy of a vortex, ten spacings across, that has gone into a finer part, over that before."""
+    monkeypatch.setattr(levels, "ORDER", order)
+    case = stream(folder, length=1.2, width=0.8, lower=0.6, upper=1.2, speed=1.0)
+
+    def inside(x):
+        return x - np.array([0.3, 0.4]), np.exp(1.0 - ((x - np.array([0.3, 0.4])) ** 2).sum(axis=1) / 0.01)
+
+    def velocity(x):
+        r, size = inside(x)
+        return np.stack([1.0 - 5.0 * np.sqrt(size) * r[:, 1], 5.0 * np.sqrt(size) * r[:, 0]], axis=1)
+
+    simulation = begun(case, velocity, lambda x: -125.0 * inside(x)[1])
+
+    def energy():
+        _, v, _, m, _ = leading(simulation)
+        return 0.5 * (m * ((v - np.array([1.0, 0.0])) ** 2).sum(axis=1)).sum()
+
+    before = energy()
+    while simulation.time < 0.6:
+        simulation.step(0.6)
+    return energy() / before
+
+
+@LONG
+def test_a_vortex_keeps_its_energy(tmp_path, monkeypatch):
+    assert kept_of_a_vortex(tmp_path, monkeypatch, order=2) > 0.94
+    assert kept_of_a_vortex(tmp_path, monkeypatch, order=1) < 0.91  # the control
+
+
+def test_the_coarsest_are_neither_born_nor_die(tmp_path):
+    case = stream(tmp_path, length=0.6, width=0.3, lower=0.3, upper=0.6, speed=2.0)
+    simulation = start(case)
+    first = simulation.store.owned
+    for _ in range(60):
+        simulation.step()
+    work = simulation.engine.of("refine")
+    born, died = work.counts[:, levels.BORN], work.counts[:, levels.DIED]
+    assert born[0] == died[0] == 0 and born[1] > 0 < died[1]
+    assert simulation.store.owned == first + born[1] - died[1]
+    assert len(np.unique(simulation.store.owned_rows("id"))) == simulation.store.owned
+    assert "level 1" in list(work.passed())[1]
+
+
+@pytest.mark.mpi(min_size=2)
+def test_same_bits_where_particles_are_born_and_die(tmp_path):
+    folder = MPI.COMM_WORLD.bcast(tmp_path)
+    folder.mkdir(parents=True, exist_ok=True)
+    if MPI.COMM_WORLD.rank == 0:
+        stream(folder, length=0.6, width=0.3, lower=0.3, upper=0.6, speed=2.0)
+    MPI.COMM_WORLD.Barrier()
+    case = stream(tmp_path, length=0.6, width=0.3, lower=0.3, upper=0.6, speed=2.0)
+    scene = Scene(case)
+    compile_ahead(scene, make_plan(scene), MPI.COMM_WORLD)
+    together, single = (start(case, comm) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    for simulation in (together, single):
+        for _ in range(40):
+            simulation.step()
+    assert single.engine.of("refine").counts[1, levels.BORN] > 0
+    (rows, *_), (alone, *_) = state(together), state(single)
+    assert np.array_equal(rows, alone)
+
+
+def test_levels_nest(tmp_path):
+    case = draft(tmp_path, STILL.replace("FACTOR", "4"))
+    found = Levels(Scene(case).layout)
+    x = np.column_stack([np.linspace(0.0, 2.0, 401), np.full(401, 0.25)])
+    finest, around = (found.outside(level, x) for level in (2, 1))
+    assert found.count == 3 and ((around < 0.0) | (finest > 0.0)).all()
+    # Who follows of the finest sees those who lead around it.
+    assert (around[finest < found.margin(2)] < -found.support(1)).all()
+
+
+@pytest.mark.parametrize(
+    "key, says",
+    [
+        (
+            "space.refine=[{shape={box={lower=[0.5,0.0],upper=[0.6,0.5]}}}]",
+            "0.1 m thick, less than the 0.14 m",
+        ),
+        ("space.refine=[{shape={box={lower=[5.0,0.0],upper=[6.0,0.5]}}}]", "outside the domain"),
+    ],
+)
+def test_regions_that_cannot_be(key, says, tmp_path):
+    from psph.scene import check
+
+    scene = Scene(draft(tmp_path, STILL.replace("FACTOR", "2"), key))
+    with pytest.raises(Exception, match=says):
+        check(scene)
+
+
+@pytest.mark.parametrize(
+    "key, says",
+    [
+        ("space.refine=[{shape={box={lower=[0,0],upper=[1,1]}},factor=3}]", "3 is not known"),
+        ('gauges.push.force.on=["tank"]', "forces on walls of several sizes are not summed"),
+        ("fluids.water.surface_tension=0.07", "it has not been tried where sizes meet"),
+        ('precision="mixed"', "levels of sizes are in double precision"),
+        ("fluids.water.jitter=0.1", "finer particles start on a lattice"),
+        ("frame.motion.translation.velocity=[0.1,0.0]", "frames with levels of sizes rest"),
+    ],
+)
+def test_what_does_not_work_yet_is_refused(key, says, tmp_path):
+    [line] = refusal(tmp_path, STILL.replace("FACTOR", "2"), key)
+    assert says in line
+
+
+def test_a_scene_of_one_size_has_no_levels(tmp_path):
+    text = STILL[: STILL.index(", refine")] + " }" + STILL[STILL.index("\ntime.end") :]
+    plan = make_plan(Scene(draft(tmp_path, text)))
+    assert not plan.finer and plan.sizes is None and not {levels.LENGTH, levels.DIVIDED} & {*plan.arrays}
