@@ -1,5 +1,5 @@
-"""Random small scenes of ideal gases: sizes, densities and disorder drawn, between mirrors or in periods; what is
-compiled stays."""
+"""Random small scenes of ideal gases: sizes, densities and disorder drawn, between mirrors, periods or under their
+own pull; what is compiled stays."""
 
 import numpy as np
 import tomli_w
@@ -11,6 +11,7 @@ LENGTH, WIDTH = 48, 16
 FAMILIES = {
     "gas between mirrors": {"dimensions": 2, "mirrors": True, "least": 0.0},
     "gas in periods": {"dimensions": 2, "periodic": ["x", "y"], "least": 1.0},
+    "gas by a tree": {"dimensions": 3, "method": "tree"},
 }
 
 
@@ -18,14 +19,19 @@ def scene(family: dict, seed: int) -> str:
     """The TOML of a scene; the same for the same seed."""
     rng, d = np.random.default_rng(seed), family["dimensions"]
     across = WIDTH if d == 2 else 6
-    sizes = [n * SPACING for n in (LENGTH, across, across)[:d]]
+    long = LENGTH if d == 2 else 2 * LENGTH  # lists reach far where it is thin
+    sizes = [n * SPACING for n in (long, across, across)[:d]]
     space = {"dimensions": d, "spacing": SPACING, "lower": [0.0] * d, "upper": sizes}
     if "periodic" in family:
         space["periodic"] = family["periodic"]
     if "mirrors" in family:
         space["symmetry"] = ["x.lower", "x.upper", "y.lower", "y.upper"]
     physics = {"shock_viscosity": {"least": family.get("least", 1.0)}}
-    cut = round(SPACING * int(rng.integers(LENGTH // 3, 2 * LENGTH // 3)), 6)
+    if "method" in family:
+        del space["lower"], space["upper"]
+        pull = {"softening": "h", "method": family["method"], "constant": float(rng.uniform(0.0, 2.0))}
+        physics["self_gravity"] = pull
+    cut = round(SPACING * int(rng.integers(long // 3, 2 * long // 3)), 6)
     gases = {}
     for name, begin, end in (("left", 0.0, cut), ("right", cut, sizes[0])):
         box = {"lower": [begin, *[0.0] * (d - 1)], "upper": [end, *sizes[1:]]}

@@ -47,7 +47,7 @@ def test_same_bits_however_it_is_run(name, tmp_path):
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("name", long_but_for((), gas_scenes.FAMILIES))
 def test_gases_of_many_sizes_have_the_same_bits_however_they_are_run(name, tmp_path):
-    """Between mirrors, and in periods."""
+    """Between mirrors, in periods, and under their own pull by a tree, softened by size."""
     for seed in range(2):
         (tmp_path / f"{seed}.toml").write_text(gas_scenes.scene(gas_scenes.FAMILIES[name], seed))
     all_alike(told(tmp_path, 16), 2)
