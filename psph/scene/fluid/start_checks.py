@@ -19,11 +19,13 @@ def start_warnings(scene: Scene) -> Iterator[str]:
     if not silent or not any(felt_gravity(scene.layout)) or not scene.has_free_surface:
         return
     for number, still in stills_of(scene.census, [*silent]).items():
+        taut = scene.case.fluids[silent[number]].surface_tension
+        drop = f", of a drop {'2 ' * (scene.dimensions == 3)}surface_tension/radius" if taut else ""
         if still.highest > 0.0:
             yield (
                 f"fluids.{silent[number]}.pressure: not given, so it starts at 0 Pa and sinks under its own "
                 f"weight: pressures swing between 0 and {2.0 * still.highest:.3g} Pa at first; give "
-                f'"{HYDROSTATIC}", or 0 if that is meant'
+                f'"{HYDROSTATIC}"{drop}, or 0 if that is meant'
             )
 
 

@@ -38,7 +38,9 @@ def rare_crest(curve: Curve, level: float | None = None, rest: float | None = No
     rows = crests(curve, level, rest)
     rank = RARE * (len(rows) + 1)
     if rank < 1.0:
-        raise NoNumber(f"{len(rows)} waves are too few; of 49 the highest has it")
+        raise NoNumber(
+            f"it takes 49 waves, of {len(rows)} the highest is less rare; run longer, or take mean_crest"
+        )
     falling = rows[np.argsort(-curve.value[rows], kind="stable")]
     place = np.interp(rank, np.arange(1, len(rows) + 1), curve.value[falling])
     return CurveNumber(float(place), float(curve.time[falling[math.floor(rank) - 1]]))
