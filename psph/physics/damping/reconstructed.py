@@ -106,9 +106,9 @@ def beside_flow(effect, i, j, pair):
 def come_fast(images, i, j, pair):
     """The part of u_ij·x_ij, m²/s, that what does not flow on with i damps: the approach along its normal, or
     along the pair where that is slower, in excess of 0.02 c, of another fluid 0.1 c.  What slides along it
-    does not approach it."""
+    does not approach it.  A wall has no normal; those of two fluids add up, and count up to four times."""
     normal = subtract(i.facing, j.facing)
-    s = dot(pair.u_ij, normal) * dot(pair.x_ij, normal) / max(dot(normal, normal), NO_NORMAL)
+    s = dot(pair.u_ij, normal) * dot(pair.x_ij, normal)
     unfelt = (AT_WALLS + (AT_OTHERS - AT_WALLS) * is_other(images, i, j)) * slower(i, j)
     return min(max(s, pair.u_dot_x) + unfelt * pair.r, 0.0)
 
