@@ -35,7 +35,7 @@ def test_the_commands_of_measure_run_on_the_case_of_the_readme(tmp_path, capsys)
     changes = ("space.spacing=0.02", "time.end=0.3", "output.frames=0.1", "gauges.up.highest.axis=y")
     folder = tmp_path / "results" / "drop"
     run(load(tmp_path / "drop.toml", changes), folder, alone(), say=lambda *_: None)
-    assert len(COMMANDS) == 5
+    assert len(COMMANDS) == 6
     said = []
     for command in COMMANDS:
         words = shlex.split(command.replace("results/", f"{tmp_path}/results/"))
@@ -45,6 +45,7 @@ def test_the_commands_of_measure_run_on_the_case_of_the_readme(tmp_path, capsys)
     assert (folder / "measured-left.csv").is_file() and "left.volume" in said[1]
     assert re.search(r"^top: maximum of mid.level: 0\.[2-5]\d* m, at 0\.\d+ s$", said[2], re.MULTILINE)
     assert len((folder / "measured-mid.csv").read_text().splitlines()) == 4
+    assert (folder / "profile.csv").is_file()
     stored = np.load(folder / "grid" / "drop_00003.npz")
     assert set(stored) == {"x", "y", "time", "velocity", "pressure", "share"}
 

@@ -108,11 +108,14 @@ return {before, after: label()};
 """
 
 
+SPACE = "space.spacing = 0.1\n"
+
+
 @pytest.fixture
 def tank(tmp_path):
     """The view of three frames in 3D, as a page."""
     random = np.random.default_rng(7)
-    frames = FrameFile(tmp_path / "tank.h5", alone(), {"case": "", "dimensions": 3})
+    frames = FrameFile(tmp_path / "tank.h5", alone(), {"case": SPACE, "dimensions": 3})
     for k in range(3):
         n = 300
         cloud = {
@@ -133,7 +136,7 @@ def tank(tmp_path):
 
 
 def test_the_view_has_the_lines_of_each_frame(tmp_path):
-    frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": "", "dimensions": 2})
+    frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": SPACE, "dimensions": 2})
     cloud = {"id": np.arange(4), "kind": np.arange(4, dtype=np.uint8) % 2, "group": np.zeros(4, np.uint8)}
     cloud |= {"position": np.eye(4)[:, :2], "velocity": np.zeros((4, 2))}
     points = np.array([[0.0, 0.0], [0.5, 0.1], [1.0, 0.5]])
@@ -147,7 +150,7 @@ def test_the_view_has_the_lines_of_each_frame(tmp_path):
 
 
 def test_the_view_moves_bodies_and_the_walls_that_the_case_moves(tmp_path):
-    case = "fluids.water = {}\nwalls = { tank = {}, paddle = {} }\nbodies.raft = {}\n"
+    case = SPACE + "fluids.water = {}\nwalls = { tank = {}, paddle = {} }\nbodies.raft = {}\n"
     frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": case, "dimensions": 2})
     cloud = {
         "id": np.arange(4),
@@ -167,7 +170,7 @@ def test_the_view_moves_bodies_and_the_walls_that_the_case_moves(tmp_path):
 
 def test_a_gate_that_opens_between_frames_is_where_it_was_in_each(tmp_path):
     """It rests in all of them, and all is so small and so slow that four decimals would show nothing."""
-    frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": "walls.gate = {}", "dimensions": 2})
+    frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": SPACE + "walls.gate = {}", "dimensions": 2})
     for k in range(2):
         cloud = {"id": np.arange(3), "kind": np.array([0, 0, 1], np.uint8), "group": np.zeros(3, np.uint8)}
         cloud["group"][2] = 1
