@@ -619,7 +619,7 @@ def test_forms_for_a_scene_are_the_same_compiled(one, dim):
 def _species(is_fluid):
     """A fluid or a wall of one density and speed of sound."""
     kind = SimpleNamespace(is_fluid=is_fluid, mobile=is_fluid, bonded=None, shear_modulus=0.0)
-    kind.density, kind.sound_speed, kind.cell_count = 1000.0, 50.0, 1
+    kind.density, kind.sound_speed, kind.cell_count, kind.motion = 1000.0, 50.0, 1, None
     return kind
 
 
