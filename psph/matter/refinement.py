@@ -4,16 +4,14 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from psph.case.keys import AXES
 from psph.fields import Field
 from psph.kinds import Created, Kind
 from psph.particles.sizes import Sizes
-from psph.scene.lattice import TOLERANCE
 from psph.scene.levels import Levels
 from psph.scene.particles import settled_at
 from psph.scene.parts.level import LevelPart, LevelWall
 from psph.scene.shapes import bounds
-from psph.simulation.levels import DIVIDED, LENGTH, Resizing
+from psph.simulation.levels import CORNER, DIVIDED, LENGTH, Resizing
 from psph.work import Rank, Stage, Work
 
 SKIN = 0.16
@@ -23,6 +21,7 @@ not how far two come nearer."""
 FIELDS = (
     Field(LENGTH, "m", "smoothing length of its level of sizes"),
     Field(DIVIDED, "1", "1 where finer particles stand in its place, else 0"),
+    Field(CORNER, "1", "which corner of a coarser particle's cell it is"),
 )
 
 
@@ -63,9 +62,13 @@ class Refinement(Kind):
     def starts(
         self, fields: Container[str], species: np.ndarray, position: np.ndarray
     ) -> Iterator[tuple[str, np.ndarray]]:
-        """The smoothing length of their level."""
+        """The smoothing length of their level, and whose corner they are."""
         level = np.array([one.level for one in self.scene.species])[species]
         yield LENGTH, (self.scene.layout.smoothing_length * 0.5**level)[:, None]
+        corner = np.zeros(len(level))
+        for one in range(1, self.levels.count):
+            corner[level == one] = self.levels.corners(one, position[level == one])
+        yield CORNER, corner[:, None]
 
     def particles(self) -> Created | None:
         """Finer ones, on no sites of the lattice."""
@@ -110,20 +113,6 @@ class Refinement(Kind):
             ends = zip(lower, upper, layout.lower, layout.upper)
             if any(high <= least or low >= most for low, high, least, most in ends):
                 yield f"space.refine[{n}].shape: outside the domain, where nothing is; move it into the fluid"
-
-    def warnings(self) -> Iterator[str]:
-        """Borders between sites, where at the start some fluid is there twice or not at all."""
-        layout = self.scene.layout
-        for n, one in enumerate(layout.case.space.refine):
-            sides = zip(AXES, layout.lattice.origin, layout.lower, layout.upper, *bounds(one.shape))
-            for axis, origin, least, most, *borders in sides:
-                for at in (x for x in borders if least < x < most):
-                    sites = (at - origin) / layout.spacing
-                    if abs(sites - round(sites)) > TOLERANCE:
-                        yield (
-                            f"space.refine[{n}].shape: its border at {axis} = {at:g} m is not between two "
-                            f"rows; put it at {origin + round(sites) * layout.spacing:g}"
-                        )
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What each level has."""

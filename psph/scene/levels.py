@@ -2,6 +2,8 @@
 
 Level 0 fills the scene.  Level l fills its region R_l and a margin around it, REACHES supports wide.  In R_l,
 and outside R_{l+1}, its particles move by their own forces; elsewhere they follow those of another level.
+A particle of level l is a corner of the cell of a coarser one, and counts to R_l by the middle of that cell:
+so the corners change sides with it, and what is there once stays there once, wherever the border is.
 """
 
 import math
@@ -66,20 +68,36 @@ class Levels:
         return np.min([self._away(one, level, points) for one in self._refined(level)], axis=0)
 
     def active(self, level: int, points: np.ndarray) -> np.ndarray:
-        """Whether particles of a level at ``points`` (n, dim) m move by their own forces (n,)."""
-        return (self.outside(level, points) < 0.0) & ~(self.outside(level + 1, points) < 0.0)
+        """Whether particles of a level on its sites ``points`` (n, dim) m move by their own forces (n,)."""
+        middles = self.middles(level, points, self.corners(level, points))
+        return (self.outside(level, middles) < 0.0) & ~(self.outside(level + 1, points) < 0.0)
+
+    def corners(self, level: int, points: np.ndarray) -> np.ndarray:
+        """Which corner of a coarser cell each of some sites ``points`` (n, dim) m of a level is (n,)."""
+        sites = np.floor((points - np.array(self.layout.lattice.origin)) / self.spacing(level))
+        return (sites.astype(np.int64) % 2) @ 2 ** np.arange(points.shape[1])[::-1] * (level > 0)
+
+    def to_corners(self, level: int) -> np.ndarray:
+        """From the middle of a cell to the particles of a finer ``level`` in it (2^dim, dim), m."""
+        return self.layout.lattice.within_cell(2) * 0.5 ** (level - 1)
+
+    def middles(self, level: int, points: np.ndarray, corner: np.ndarray) -> np.ndarray:
+        """The middles of the coarser cells of which particles of a level at ``points`` (n, dim) m are the
+        ``corner`` (n,)."""
+        return points - self.to_corners(level)[corner.astype(np.int64)] if level else points
 
     def sites(self, level: int, extra: float = 0.0) -> np.ndarray:
         """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more."""
         lattice, points = self.layout.lattice, []
-        within = lattice.within_cell(2**level)
+        coarser, corners = lattice.within_cell(2 ** (level - 1)), self.to_corners(level)
         wide = self.margin(level) + extra
         for first, last in lattice.chunks():
             grid, shape = lattice.grid(first, last), lattice.shape(first, last)
             middle = np.stack([np.broadcast_to(x, shape).ravel() for x in grid], axis=1)
             middle = middle[self.outside(level, middle) < wide + self.layout.spacing]
-            fine = (middle[:, None, :] + within[None, :, :]).reshape(-1, middle.shape[1])
-            points.append(fine[self.outside(level, fine) < wide])
+            parents = (middle[:, None, :] + coarser[None, :, :]).reshape(-1, middle.shape[1])
+            parents = parents[self.outside(level, parents) < wide]
+            points.append((parents[:, None, :] + corners[None, :, :]).reshape(-1, middle.shape[1]))
         return np.concatenate(points)
 
     def held(self, level: int, number: int, extra: float = 0.0) -> np.ndarray | None:

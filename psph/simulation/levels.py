@@ -19,12 +19,13 @@ from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
 from psph.work import Rank, Work
 
-LENGTH, DIVIDED = "own_length", "divided"
-"""Names of the fields: the smoothing length of its level; 1 where finer ones stand in its place."""
+LENGTH, DIVIDED, CORNER = "own_length", "divided", "corner"
+"""Names of the fields: the smoothing length of its level; 1 where finer ones stand in its place; which corner
+of a coarser particle's cell it is."""
 
 LASTS = 0.5
-"""Spacings of the coarser level beyond a margin at which particles die; at twice that who stands there may
-divide once more."""
+"""Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
+more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
 
 SELDOM = 8
 """Steps for which the velocity serves of those who follow deep in a finer region."""
@@ -84,9 +85,10 @@ class Resizing(Work):
         fluid, level = self.fluid_of[group], self.level_of[group]
         away = np.full(len(group), -np.inf)
         within = np.full(len(group), np.inf)
+        corner = store[CORNER][store.inner]
         for one in range(self.levels.count):
             own = fluid & (level == one)
-            away[own] = self.levels.outside(one, places[own])
+            away[own] = self.levels.outside(one, self.levels.middles(one, places[own], corner[own]))
             within[own] = self.levels.outside(one + 1, places[own])
         follows = fluid & ((away >= 0.0) | (within < 0.0))
         turns = fluid & (follows != self.follows[group])
@@ -97,7 +99,7 @@ class Resizing(Work):
         dx = self.levels.layout.spacing * 0.5**level
         divided = store[DIVIDED][store.inner]
         divides = fluid & (within < wide[level + 1]) & (divided == 0.0)
-        divided[fluid & (within > wide[level + 1] + 2.0 * LASTS * dx)] = 0.0
+        divided[fluid & (within > wide[level + 1] + LASTS * dx)] = 0.0
         divided[divides] = 1.0
         if population is None:
             return
@@ -124,9 +126,11 @@ class Resizing(Work):
         population.next_id += many * len(everyone)
         level = self.level_of[group]
         self._count(BORN, level)
-        within = np.tile(self.levels.layout.lattice.within_cell(2), (len(parents), 1))
-        rows = list(store.rows["position"])
-        block[rows] += (within * 0.5 ** (level - 1)[:, None]).T
+        corner = np.tile(np.arange(many), len(parents))
+        block[list(store.rows["position"])] += (
+            self.levels.to_corners(1)[corner] * 0.5 ** (level - 1)[:, None]
+        ).T
+        block[store.rows[CORNER].start] = corner
         block[store.rows["mass"].start] = self.mass_of[group]
         block[store.rows[LENGTH].start] *= 0.5
         block[store.rows[DIVIDED].start] = 0.0

@@ -67,4 +67,4 @@ class LevelWall(RigidPart):
     def places(self, layout) -> np.ndarray | None:
         """The sites of its level that its wall has, as far as its fluid sees it, m."""
         levels = Levels(layout)
-        return levels.held(self.level, self.origin, levels.support(self.level))
+        return levels.held(self.level, self.origin, levels.support(self.level - 1))
