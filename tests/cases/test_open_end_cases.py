@@ -193,12 +193,12 @@ def test_the_discharge_of_a_weir(tmp_path):
 @pytest.mark.long
 @pytest.mark.timeout(600)
 def test_the_discharge_of_a_sluice(tmp_path):
-    """At 7 spacings an opening: within 7 % of that by the depth before it, with a contraction of 0.61."""
+    """At 7 spacings an opening, 3.7 % below that by the depth before it, with a contraction of 0.61."""
     run = finished("ends/sluice", tmp_path, "space.spacing=0.02", "time.end=7.0")
     depth = window(run.gauges()["head"], "head.level", 5.0, 7.0).mean()
     flow = window(run.gauges()["gate"], "gate.flow", 5.0, 7.0).mean()
     jet = 0.61 * 0.15
-    assert flow == pytest.approx(jet * np.sqrt(19.62 * depth / (1.0 + jet / depth)), rel=0.07)
+    assert flow == pytest.approx(jet * np.sqrt(19.62 * depth / (1.0 + jet / depth)), rel=0.05)
 
 
 @pytest.mark.parametrize("spacing, error", [(0.025, 0.05), pytest.param(0.0125, 0.03, marks=LONG)])
