@@ -12,7 +12,14 @@ from physics.test_conservation import potential_of_unequal
 from psph.case import CaseError, load
 from psph.physics.damping.diffusion import BesideSmoothDensity, DensityDiffusion, TankDiffusion
 from psph.physics.damping.matter import SeveralFluids
-from psph.physics.damping.reconstructed import BesideLinearFlow, DampingToEdges, EndingAtOthers, Whole
+from psph.physics.damping.reconstructed import (
+    BesideLinearFlow,
+    BesideSoils,
+    DampingToEdges,
+    EndingAtOthers,
+    Whole,
+    images_of,
+)
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
 from psph.physics.fluid.viscosity import PairDamping
@@ -79,6 +86,34 @@ def test_other_fluids_are_as_nothing_to_the_rate_of_strain():
     found = sums_of(DampingToEdges(ALPHA, 0.0, 0.0, OTHERS), apart, 3)[:3]
     assert found == pytest.approx([part[3] for part in upper], rel=1e-9)
     assert found != pytest.approx(sums_of(DampingToEdges(ALPHA, 0.0), apart, 3)[:3], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "laws, densities, flows, parts",
+    (
+        ((1.0, 2.0), (1600.0, 1900.0), 1.0, 0.0),  # two soils
+        ((1.0, -1.0), (1600.0, 1600.0), 0.0, 0.0),  # soil, and its image where it is held
+        ((1.0, 0.0), (1000.0, 1000.0), 0.0, 1.0),
+        ((0.0, -1.0), (1000.0, 1600.0), 0.0, 1.0),
+        ((0.0, 0.0), (1000.0, 1000.0), 1.0, 0.0),
+        ((0.0, 0.0), (1000.0, 900.0), 0.0, 1.0),
+    ),
+)
+def test_soils_flow_on_with_each_other_and_water_with_its_own(laws, densities, flows, parts):
+    p = view()._replace(is_fluid=np.ones(2), strength=np.array(laws), rest_density=np.array(densities))
+    i, j, _ = pair_of(p._replace(wave_speed=np.full(2, C)), 0, 1)
+    images = BesideSoils(SeveralFluids())
+    assert (images.flows(i, j), images.is_other(i, j)) == (flows, parts)
+
+
+BLOCK = "[solids.block]\nshape.box = { lower = [0.3, 0.5], upper = [0.6, 0.8] }\ndensity = 1100.0\nyoung = 1e6\npoisson = 0.3\n"
+OIL = "[fluids.oil]\nshape.box = { lower = [0.7, 0.5], upper = [0.9, 0.7] }\ndensity = 800.0\n"
+
+
+def test_two_fluids_part_beside_solids_too(tmp_path):
+    stable = ("scheme=stable", "physics.sound_speed=40.0")
+    assert images_of(Scene(draft(tmp_path, TANK + OIL + BLOCK, *stable))) == OTHERS
+    assert images_of(Scene(draft(tmp_path, TANK + BLOCK, *stable))) == Whole()
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)

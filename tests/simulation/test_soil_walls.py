@@ -219,11 +219,11 @@ def test_soil_rests_on_a_mirror_that_sticks_below_its_friction(tmp_path):
 
 @pytest.mark.parametrize(
     "images, bound",
-    ((reconstructed.EndingAtPlanes, 0.02), pytest.param(reconstructed.Whole, None, marks=LONG)),
+    ((reconstructed.BesideSoils, 0.02), pytest.param(reconstructed.Whole, None, marks=LONG)),
 )
 def test_soil_slides_on_a_mirror_that_sticks_as_it_does_on_a_wall(images, bound, tmp_path, monkeypatch):
     """g (sin θ − sin φ cos θ), Davis (1968).  The control damps the jump at the plane, and gains a tenth less."""
-    monkeypatch.setattr(reconstructed, "EndingAtPlanes", images)
+    monkeypatch.setattr(reconstructed, "BesideSoils", images)
     angle = math.radians(35.0)
     pull = f"physics.gravity=[{9.81 * math.sin(angle)!r}, {-9.81 * math.cos(angle)!r}]"
     layer, _ = begun(draft(tmp_path, LAYER, pull))
@@ -232,3 +232,38 @@ def test_soil_slides_on_a_mirror_that_sticks_as_it_does_on_a_wall(images, bound,
     gain = (end[0] - begin[0]) / (end[1] - begin[1])
     theory = 9.81 * (math.sin(angle) - 0.5 * math.cos(angle))
     assert gain == pytest.approx(theory, rel=bound) if bound else gain < 0.95 * theory
+
+
+UNDER_A_STREAM = """
+space = { dimensions = 2, spacing = 0.04, periodic = ["x"], lower = [0.0, -0.16], upper = [0.32, 0.8] }
+time.end = 1.0
+physics = { gravity = [0.0, -9.81], sound_speed = 30.0 }
+[fluids.water]
+shape.box = { lower = [0.0, 0.2], upper = [0.32, 0.4] }
+pressure = "hydrostatic"
+velocity = [1.0, 0.0]
+[soils.bed]
+shape.box = { lower = [0.0, 0.0], upper = [0.32, 0.2] }
+density = 1900.0
+young = 1e6
+poisson = 0.3
+friction_angle = 32.0
+[walls.floor]
+shape.box = { lower = [0.0, -0.16], upper = [0.32, 0.0] }
+continues = "bed"
+no_slip = true
+"""
+
+
+def speed_over_soil(folder):
+    """The mean speed of water after 0.2 s on soil at rest, m/s, of 1."""
+    stream, _ = begun(draft(folder, UNDER_A_STREAM))
+    store = advanced(stream, 0.2).store
+    return store.shown("velocity")[store.shown("group") == 0, 0].mean()
+
+
+def test_water_slides_over_soil_without_friction(tmp_path, monkeypatch):
+    """The control takes the jump of the velocity for disorder."""
+    assert speed_over_soil(tmp_path) == pytest.approx(1.0, abs=2e-3)
+    monkeypatch.setattr(reconstructed, "images_of", lambda scene: reconstructed.Whole())
+    assert speed_over_soil(tmp_path) < 0.97

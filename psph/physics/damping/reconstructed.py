@@ -9,7 +9,7 @@ from psph.engine.jit import call_by_type
 from psph.fields import SYMMETRIC, VECTOR, StrainRate, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper, where
-from psph.physics.damping.matter import FluidsUnderTension, Matter, SeveralFluids, alike, matter_of
+from psph.physics.damping.matter import FluidsUnderTension, Matter, OneMatter, SeveralFluids, alike, matter_of
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
@@ -44,19 +44,6 @@ class Whole(NamedTuple):
         return 0.0
 
 
-class EndingAtPlanes(NamedTuple):
-    """Soil ends at a mirror that holds it as at a wall: where it slides on it, that is no disorder.
-
-    Its image moves the other way there; the number of its law is negative (psph.fields.Continued).
-    """
-
-    def flows(self, i, j):
-        """1 where j flows on with i, else 0."""
-        return where(i.strength * j.strength < 0.0, 0.0, j.is_fluid)
-
-    is_other = Whole.is_other
-
-
 class EndingAtOthers(NamedTuple):
     """A fluid ends at one of another ``matter`` as at a free surface: both slide along each other, and
     that is no disorder; what approaches the other is damped as before a wall."""
@@ -72,16 +59,52 @@ class EndingAtOthers(NamedTuple):
         return i.is_fluid * j.is_fluid * (1.0 - alike(self.matter, i, j))
 
 
+class BesideSoils(NamedTuple):
+    """Soils flow on with each other; water ends at them, and at water of another ``matter``, as
+    :class:`EndingAtOthers`.  Soil ends at a mirror that holds it as at a wall: where it slides on it, that is
+    no disorder.
+
+    Its image moves the other way there; the number of its law is negative (psph.fields.Continued).
+    """
+
+    matter: Matter
+
+    def flows(self, i, j):
+        """1 where j flows on with i, else 0."""
+        held = where(i.strength * j.strength < 0.0, 1.0, _apart(self.matter, i, j))
+        return j.is_fluid * (1.0 - held)
+
+    def is_other(self, i, j):
+        """1 where i and j are fluids, or a soil and a fluid, that part, else 0."""
+        return i.is_fluid * j.is_fluid * _apart(self.matter, i, j)
+
+
+@helper
+def _apart(matter, i, j):
+    """0 of two soils, 1 of soil and water, and of waters where they are of two matters."""
+    either, both = abs(i.strength) + abs(j.strength), abs(i.strength * j.strength)
+    return where(both > 0.0, 0.0, where(either > 0.0, 1.0, 1.0 - alike(matter, i, j)))
+
+
 flows, is_other = call_by_type("flows"), call_by_type("is_other")
 """(images, i, j) → 1 or 0: see :class:`Whole`."""
 
 
 def images_of(scene: Facts):
     """What flows on with what in a scene."""
+    matter = _parting(scene)
     if scene.strengths:
-        return EndingAtPlanes()
+        return BesideSoils(matter)
+    return Whole() if isinstance(matter, OneMatter) else EndingAtOthers(matter)
+
+
+def _parting(scene: Facts) -> Matter:
+    """Which fluids part, whatever is beside them: walls, solids and soils do not make them several."""
     matter = matter_of(scene)
-    return EndingAtOthers(matter) if isinstance(matter, SeveralFluids | FluidsUnderTension) else Whole()
+    if isinstance(matter, FluidsUnderTension):
+        return matter
+    fluids = {(one.density, one.wave_speed) for one in scene.species if one.is_fluid}
+    return SeveralFluids() if len(fluids) > 1 else OneMatter()
 
 
 @helper
@@ -143,7 +166,7 @@ class ReconstructedDamping(NamedTuple):
         """The form that knows the spacing."""
         more = max(self.in_disorder - self.alpha, 0.0)
         images = images_of(scene)
-        ends = isinstance(images, EndingAtPlanes | EndingAtOthers) or not _all_flows(scene)
+        ends = isinstance(images, BesideSoils | EndingAtOthers) or not _all_flows(scene)
         form = DampingToEdges if ends else BesideLinearFlow
         return form(self.alpha, (NEAR * scene.spacing) ** 2, more, images)
 
