@@ -93,6 +93,22 @@ def with_images(
     return places, number
 
 
+def mirrored(
+    places: np.ndarray, number: np.ndarray, reach: np.ndarray, planes: Iterable[tuple[int, float]]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Places (n, 2), m, with those behind ``planes``, an axis of the picture and where it stands, m, that
+    reach before them; and the ``number`` of each one's particle, which ``reach`` so far, m.
+
+    A picture that ends at the planes then has what each particle would spread beyond them.
+    """
+    for axis, at in planes:
+        behind = places.copy()
+        behind[:, axis] = 2.0 * at - places[:, axis]
+        near = np.abs(places[:, axis] - at) < reach[number]
+        places, number = np.concatenate([places, behind[near]]), np.concatenate([number, number[near]])
+    return places, number
+
+
 @elementwise
 def spread_over(first, last, places, amounts, reach, table, corner, step, found):
     """Add the amounts of the particles ``first`` to ``last`` to the pixels within their reach."""

@@ -183,6 +183,22 @@ def test_a_slice_and_a_column_of_a_gas(folder_of):
     assert np.nanmedian(mean) == pytest.approx(1.0, rel=0.01)
 
 
+def test_a_column_beside_mirrors_is_that_of_the_whole(tmp_path):
+    """Even to a hundredth up to the planes, with all of the mass; without images half of it at a plane."""
+    text = CASE.format(dimensions=3, z=", 0.0", up=", 0.6", times=1)
+    text = text.replace("periodic =", "symmetry =").replace(
+        '["x", "y"]', '["x.lower", "y.lower", "z.lower", "x.upper", "y.upper", "z.upper"]'
+    )
+    (tmp_path / "case.toml").write_text(text.replace("spacing = 0.05\n", ""))
+    run(load(tmp_path / "case.toml"), tmp_path / "out", alone(), say=lambda *_: None)
+    for along, area in (("z", 1.2 * 1.2), ("x", 1.2 * 0.6)):
+        show = Show(Run(tmp_path / "out"), [0.0], None, along=along)
+        pixels, step = show.frame(0)["pixels"], show.panel.grid.step
+        assert pixels.max() / pixels.min() - 1.0 < 0.02
+        assert pixels.sum() * step[0] * step[1] == pytest.approx(1.2 * 1.2 * 0.6, rel=1e-9)
+        assert pixels.size * step[0] * step[1] == pytest.approx(area, rel=1e-9)
+
+
 def test_what_there_is_no_way_to_see_is_refused(folder_of):
     flat = folder_of(2)
     with pytest.raises(Refused, match="--column x: not an axis to look along; give z"):

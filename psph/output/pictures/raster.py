@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from psph.case.keys import AXES
+from psph.composition.mirrors import BELOW, Plane
 from psph.fields import WALL
-from psph.output.columns import Pixels, columns, kernel_column, with_images
+from psph.output.columns import Pixels, columns, kernel_column, mirrored, with_images
 from psph.output.export.parts import Exported
 from psph.output.grids import Cloud, Weighing, at_points
 from psph.output.pictures.flat import Flat, Slice
@@ -55,12 +56,21 @@ class Raster(Flat):
         super().__init__(room, cut)
 
     def look(self, along: int | None) -> None:
-        """Lay out the page; along axes that repeat it has one period."""
+        """Lay out the page; along axes that repeat it has one period, and it ends at mirrors."""
         super().look(along)
         layout = self._mass.scene.layout
         for n, axis in enumerate((self.across, self.up)):
             if layout.periods[axis]:
                 self.lower[n], self.upper[n] = layout.lower[axis], layout.upper[axis]
+        for n, plane in self._planes:
+            (self.lower if plane.side == BELOW else self.upper)[n] = plane.at
+
+    @property
+    def _planes(self) -> list[tuple[int, Plane]]:
+        """Mirrors that the page has the edge of, each with the axis of the page."""
+        axes = {self.across: 0, self.up: 1}
+        planes = self._mass.scene.layout.mirror_planes
+        return [(axes[plane.axis], plane) for plane in planes if plane.axis in axes]
 
     def of(self, frame: dict) -> dict:
         """All of it, with ``pixels``."""
@@ -126,6 +136,7 @@ class LinesOfSight(Raster):
         reach, periods = kernel.support * length, [scene.layout.periods[axis] for axis in axes]
         ends = self.lower, self.upper
         places, who = with_images(here["position"][:, axes], reach, *ends, periods)
+        places, who = mirrored(places, who, reach, [(n, plane.at) for n, plane in self._planes])
         amounts = [mass[who], (mass * here["values"])[who]] if not self._of_mass else [mass[who]]
         table = kernel_column(kernel, scene.dimensions)
         found = columns(places, amounts, reach[who], table, self.grid)
