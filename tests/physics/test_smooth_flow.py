@@ -14,10 +14,10 @@ from psph.physics.damping.diffusion import BesideSmoothDensity, DensityDiffusion
 from psph.physics.damping.matter import SeveralFluids
 from psph.physics.damping.reconstructed import (
     BesideLinearFlow,
-    BesideSoils,
     DampingToEdges,
     EndingAtOthers,
     Whole,
+    WithStrengths,
     images_of,
 )
 from psph.physics.fluid.correction import GradientCorrection
@@ -102,7 +102,7 @@ def test_other_fluids_are_as_nothing_to_the_rate_of_strain():
 def test_soils_flow_on_with_each_other_and_water_with_its_own(laws, densities, flows, parts):
     p = view()._replace(is_fluid=np.ones(2), strength=np.array(laws), rest_density=np.array(densities))
     i, j, _ = pair_of(p._replace(wave_speed=np.full(2, C)), 0, 1)
-    images = BesideSoils(SeveralFluids())
+    images = WithStrengths(SeveralFluids())
     assert (images.flows(i, j), images.is_other(i, j)) == (flows, parts)
 
 

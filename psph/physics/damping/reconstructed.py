@@ -59,7 +59,7 @@ class EndingAtOthers(NamedTuple):
         return i.is_fluid * j.is_fluid * (1.0 - alike(self.matter, i, j))
 
 
-class BesideSoils(NamedTuple):
+class WithStrengths(NamedTuple):
     """Soils flow on with each other; water ends at them, and at water of another ``matter``, as
     :class:`EndingAtOthers`.  Soil ends at a mirror that holds it as at a wall: where it slides on it, that is
     no disorder.
@@ -94,7 +94,7 @@ def images_of(scene: Facts):
     """What flows on with what in a scene."""
     matter = _parting(scene)
     if scene.strengths:
-        return BesideSoils(matter)
+        return WithStrengths(matter)
     return Whole() if isinstance(matter, OneMatter) else EndingAtOthers(matter)
 
 
@@ -166,7 +166,7 @@ class ReconstructedDamping(NamedTuple):
         """The form that knows the spacing."""
         more = max(self.in_disorder - self.alpha, 0.0)
         images = images_of(scene)
-        ends = isinstance(images, BesideSoils | EndingAtOthers) or not _all_flows(scene)
+        ends = isinstance(images, WithStrengths | EndingAtOthers) or not _all_flows(scene)
         form = DampingToEdges if ends else BesideLinearFlow
         return form(self.alpha, (NEAR * scene.spacing) ** 2, more, images)
 
