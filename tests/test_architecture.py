@@ -409,7 +409,7 @@ def test_no_file_names_a_kind_of_matter_outside_its_room_but_for_those_that_are_
         ("scene.case.fluids", ["fluids"]),
         ("plan.of('solids')", ["solids"]),
         ("self._scene.rigid_bodies", ["rigid_bodies"]),
-        ("class BesideSoils: pass", ["WithStrengths"]),
+        ("class BesideSoils: pass", ["BesideSoils"]),
         ("def f(solids): return f(updated=1)", ["solids", "updated"]),
         ("from psph.case.solids import Reaction", ["case/solids/Reaction"]),
         ("from ..matter.body import RigidBodies", ["matter/body/RigidBodies"]),
