@@ -24,6 +24,8 @@ KINDS = (
     "soil",
     "body on soil",
     "updated",
+    "layers under tension",
+    "water that sticks",
 )
 """Scenes without their disorder: noise is another in 3D."""
 

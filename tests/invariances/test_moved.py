@@ -26,11 +26,13 @@ MOVED = (
     "body and solid",
     "mud by bingham",
     "extrapolated",
+    "layers under tension",
+    "water that sticks",
 )
-"""A scene of each kind of matter, and walls that show a pressure of their own."""
+"""A scene of each kind of matter, and walls that show a pressure of their own, and tensions."""
 
-HELD = ("jointed bodies", "moored bodies", "chained bodies", "moored bodies on wet soils")
-"""Scenes with hinges, joints and lines to places in space: what drifts would leave them."""
+HELD = ("body in a surface", "jointed bodies", "moored bodies", "chained bodies", "moored bodies on wet soils")
+"""Scenes with mirrors, hinges, joints and lines to places in space: what drifts would leave them."""
 
 NO_SHIFT = {"position_shift": "off"}
 """Its size is bounded by the largest speed, which drifts: docs/limits.md says by how much that tells."""

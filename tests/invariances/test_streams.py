@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from invariances.running import begun
-from invariances.scenes import DX, STREAMS
+from invariances.scenes import DX
+from invariances.streams import STREAMS
 from invariances.transforms import TURNS_OF_A_SCENE, Shift, Units
 from long import long_but_for
 from scipy.spatial import cKDTree

@@ -199,7 +199,7 @@ NO_UNIT = (
     "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction", "restitution",
     "exponent", "friction", "fast_friction", "inertial_number", "damping_ratio", "angle", "phase", "cfl",
     "gather_every", "hourglass", "along", "pieces", "drag", "skin_drag", "normal", "alpha", "skin", "rate", "epsilon", "delta", "beta",
-    "contact",
+    "contact", "contact_angle", "advancing", "receding",
 )  # fmt: skip
 UNIT_OF = {
     **dict.fromkeys(
@@ -234,6 +234,7 @@ UNIT_OF = {
     ),
     **dict.fromkeys(("viscosity", "flow"), "m2/s"),
     "pretension": "N/m",
+    **dict.fromkeys(("surface_tension", "oil"), "N/m"),
 }
 
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tomli_w
-from invariances.scenes import SCENES, STREAMS
+from invariances.scenes import SCENES
+from invariances.streams import STREAMS
 from jobs import mpirun
 from long import long_but_for, tell
 from parallel import gas_scenes
@@ -53,6 +54,10 @@ def test_gases_of_many_sizes_have_the_same_bits_however_they_are_run(name, tmp_p
     all_alike(told(tmp_path, 16), 2)
 
 
+TENSE = [name for name, one in SCENES.items() if "surface_tension" in str(one)]
+"""Scenes whose surfaces pull."""
+
+
 def with_a_gap(tables, axis):
     """A soil scene cut along ``axis``, with more of its soil 6 m on, so that ranks between have no particle; mirrors,
     which are without end, become walls."""
@@ -75,9 +80,10 @@ def test_soils_beside_walls_and_bodies_have_the_same_bits_however_they_are_run(n
 
 
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("name", long_but_for((), STREAMS))
-def test_streams_through_open_ends_have_the_same_bits_however_they_are_run(name, tmp_path):
-    (tmp_path / "x.toml").write_text(tomli_w.dumps(STREAMS[name] | {"parallel": {"axis": "x"}}))
+@pytest.mark.parametrize("name", long_but_for((), (*STREAMS, *TENSE)))
+def test_streams_and_tensions_have_the_same_bits_however_they_are_run(name, tmp_path):
+    tables = {**STREAMS, **SCENES}[name]
+    (tmp_path / "x.toml").write_text(tomli_w.dumps(tables | {"parallel": {"axis": "x"}}))
     all_alike(told(tmp_path, 60), 1)
 
 
