@@ -63,8 +63,6 @@ class Kind:
     """What it adds to log.csv: energies in J."""
     may_save: ClassVar[tuple] = ()
     """Fields of frames that only such matter has (psph.fields.Field), whatever of it a scene has."""
-    keeps_energy: ClassVar[bool] = True
-    """Whether the energy of a scene with it is all in the books, so that a guard can watch it."""
     is_stiff: ClassVar[bool] = True
     """Whether density and speed stay near those at rest, so that guards can watch them."""
 
@@ -171,6 +169,11 @@ class Kind:
     def moves(self) -> bool:
         """Whether its work moves particles itself, beside the kick of what is free."""
         return False
+
+    @property
+    def keeps_energy(self) -> bool:
+        """Whether the energy of a scene with it is all in the books, so that a guard can watch it."""
+        return True
 
     @property
     def bears_held(self) -> bool:

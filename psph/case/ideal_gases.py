@@ -116,6 +116,7 @@ class IdealGas(FreeMatter):
     equation_of_state: ClassVar = None
     continues: ClassVar = ""
     word: ClassVar = IDEAL_GASES
+    takes_pistons: ClassVar = True
     refuses: ClassVar = {
         **{
             one: f"ideal gases push no {one} and feel none; remove one of the two"

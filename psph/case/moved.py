@@ -28,8 +28,13 @@ def moved(case) -> Iterator[tuple[tuple, Any, str]]:
 
 def _walls(case) -> Iterator[tuple[tuple, Any, str]]:
     for name, wall in case.walls.items():
-        if wall.motion and wall.condition == MIRROR:
-            yield ("walls", name, "motion"), ..., "a mirror stands still; give the wall another condition"
+        pressed = all(entry.of.takes_pistons for entry in case.movers)
+        if wall.motion and wall.condition == MIRROR and not pressed:
+            yield (
+                ("walls", name, "motion"),
+                ...,
+                "a mirror moves before gases alone, and else stands still; give the wall another condition",
+            )
         if wall.motion and any(wall.velocity or ()):
             yield (
                 ("walls", name, "velocity"),

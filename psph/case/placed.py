@@ -38,6 +38,8 @@ class Placed(Answering):
     """Whether forces move it as a whole."""
     poured: ClassVar[bool] = False
     """Whether a region may let more of it in."""
+    takes_pistons: ClassVar[bool] = False
+    """Whether a plane mirror that moves may press it."""
     always_loaded: ClassVar[bool] = False
     """Whether the push of what flows is summed on it in any case."""
     not_absorbing: ClassVar[str] = ""

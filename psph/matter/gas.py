@@ -48,6 +48,12 @@ class IdealGases(Kind):
 
     name = "ideal_gases"
     columns = ("thermal_energy",)
+
+    @property
+    def keeps_energy(self) -> bool:
+        """Not where mirrors that move do work."""
+        return not any(plane.motion for plane in self.scene.layout.mirror_planes)
+
     may_save = (LENGTH, HEAT, SOUND, SHARE)
     is_stiff = False
 

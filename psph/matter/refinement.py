@@ -29,7 +29,6 @@ class Refinement(Kind):
     """Fluids and walls with finer particles in some regions."""
 
     name = "refine"
-    keeps_energy = False
     moves = True
     fields = FIELDS
 
@@ -37,6 +36,11 @@ class Refinement(Kind):
     def is_in(cls, case) -> bool:
         """Whether a case has such regions."""
         return bool(case.space.refine)
+
+    @property
+    def keeps_energy(self) -> bool:
+        """Not that of who follows."""
+        return False
 
     @property
     def bears_held(self) -> bool:

@@ -14,7 +14,11 @@ class Regions(Kind):
     """Regions, each with the number of the fluid that comes."""
 
     name = "regions"
-    keeps_energy = False
+
+    @property
+    def keeps_energy(self) -> bool:
+        """Not that of what comes and goes."""
+        return False
 
     @cached_property
     def regions(self) -> tuple:

@@ -74,7 +74,8 @@ class Walls(Kind):
                 yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {does}"
         for plane in scene.layout.mirror_planes:
             sticks = "; the fluid sticks to it" if plane.sticks else ""
-            yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
+            goes = ", which moves" if plane.motion else ""
+            yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{goes}{sticks}"
 
 
 def measure_levels(simulation) -> None:

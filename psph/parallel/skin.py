@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from psph.composition.mirrors import Plane
+from psph.composition.reflections import Plane
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import largest
 from psph.particles.drift import bounding_boxes, largest_differences

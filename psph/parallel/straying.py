@@ -11,18 +11,20 @@ from psph.particles.sizes import Sizes
 
 
 class Straying:
-    """Keeps the lists of ``domain`` until a particle has strayed by half of its skin, a part of its reach.
+    """Keeps the lists of ``domain`` while they reach as far as particles have strayed and grown.
 
-    Lists reach so far beyond the larger support of a pair that they hold as long as no particle has.  How
+    Lists reach so far beyond the larger support of a pair (psph.particles.sizes).  How
     far each has strayed is measured where it stands at the end of a step, less the way that all matter has
     gone in the mean: a cloud that drifts as one needs no new lists for it.  No particle is more than
-    ``farthest`` m from where it was listed.  The same on every rank.
+    ``farthest`` m from where it was listed.  By ``growth`` a smoothing length may be larger than then for
+    lists to hold.  The same on every rank.
     """
 
     def __init__(self, domain: Domain, sizes: Sizes):
         self.domain, self._sizes = domain, sizes
         self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
         self._drift, self._since = (0.0,) * domain.store.dimensions, 0.0
+        self.growth = sizes.growth_left(0.0)
 
     @property
     def farthest(self) -> float:
@@ -35,6 +37,7 @@ class Straying:
         terms = [store.shown("mass"), *(store.shown("mass") * v[inner] for v in store["velocity"])]
         mass, *momentum = exact_sums(self.domain.comm, np.stack(terms, axis=1)).tolist()
         self._drift, self._since = tuple(p / mass for p in momentum), 0.0
+        self.growth = self._sizes.growth_left(0.0)
 
     def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
         """True: it is measured once particles have moved by the step of ``dt`` s, see :meth:`reach`."""
@@ -48,11 +51,12 @@ class Straying:
         for x, listed, v in zip(store["position"], store["listed_position"], self._drift):
             way = x[inner] - listed[inner]
             apart2, strayed2 = apart2 + way**2, strayed2 + (way - v * self._since) ** 2
-        share2 = strayed2 / self._sizes.stray(store[self._sizes.listed][inner]) ** 2
+        share2 = strayed2 / (self._sizes.support * store[self._sizes.listed][inner]) ** 2
         tops = [apart2.max(initial=0.0), share2.max(initial=0.0)]
         apart2, share2 = largest(self.domain.comm, tops).tolist()
+        self.growth = self._sizes.growth_left(math.sqrt(share2))
         # Written so that NaN asks for new lists.
-        return share2 < 1.0 and apart2 < self.farthest**2
+        return self.growth > 0.0 and apart2 < self.farthest**2
 
     def state(self) -> dict:
         """What :meth:`reach` rests on beside the particles."""

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable
 
-from psph.composition.mirrors import Plane
-from psph.fields import Place, Stress, StressUnderWeight, indices
+from psph.composition.reflections import ABOVE, BELOW, Plane
+from psph.fields import Moving, Place, Stress, StressUnderWeight, indices
+from psph.particles.sizes import TooLarge
 
 
 def bring_back(store, planes: Iterable[Plane], free: int) -> None:
@@ -21,6 +22,23 @@ def bring_back(store, planes: Iterable[Plane], free: int) -> None:
             x[crossed] = 2.0 * plane.at - x[crossed]
             for row in _odd_rows(store, plane):
                 store.data[row, store.inner][crossed] *= -1.0
+            if plane.motion:
+                for name in (name for name, field in store.fields.items() if field.image is Moving):
+                    store[name][plane.axis][store.inner][crossed] += 2.0 * plane.velocity[plane.axis]
+
+
+def check_apart(planes: Iterable[Plane], reach: float) -> None:
+    """Raise TooLarge where two ``planes`` across an axis are nearer than particles ``reach``, m: images of
+    images would be seen."""
+    pairs = ((one, other) for one in planes for other in planes if one.axis == other.axis)
+    for low, high in (
+        (one.at, other.at) for one, other in pairs if one.side == BELOW and other.side == ABOVE
+    ):
+        if high - low < reach:
+            raise TooLarge(
+                f"mirrors have come to {low:.4g} and {high:.4g} m, nearer to each other than particles "
+                f"reach, {reach:.4g} m; let them stop before, or give more particles"
+            )
 
 
 def _odd_rows(store, plane: Plane) -> Iterable[int]:

@@ -6,7 +6,11 @@ from typing import NamedTuple
 from psph.errors import Failed
 
 GROWTH = 1.1
-"""By how much a smoothing length may grow before lists are made anew."""
+"""By how much a smoothing length may grow before lists are made anew, where particles have strayed by half of
+their skin."""
+
+LEAST_GROWTH = 1.02
+"""Lists are made anew where they reach no farther than for lengths that have grown by this."""
 
 CUTOFFS_A_PERIOD = 3.0
 """A period holds so many cutoffs at the least: the nearest image is the only one in reach."""
@@ -19,7 +23,8 @@ class TooLarge(Failed):
 class Sizes(NamedTuple):
     """Where sizes differ: the kernel's ``support`` over h, the ``skin`` as a part of it, and the names of the
     fields that hold h, the ``length``, and that of when lists were made, ``listed``; ``between`` is the
-    shortest distance of two mirrors across one axis, m; until new lists h may grow by ``growth``."""
+    shortest distance of two mirrors across one axis, m.  Lists reach ``growth`` + ``skin`` times the support:
+    the ways that both of a pair have strayed, and what lengths have grown by, share what is more than 1."""
 
     support: float
     skin: float
@@ -32,9 +37,11 @@ class Sizes(NamedTuple):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""
         return (self.growth + self.skin) * self.support * length
 
-    def stray(self, length):
-        """Distance, m, by which a particle may stray that was listed with this smoothing ``length``."""
-        return 0.5 * self.skin * self.support * length
+    def growth_left(self, strayed: float) -> float:
+        """By how much h may have grown since lists were made, where particles have ``strayed`` by this part
+        of their support then, at the most; 0 where lists reach too short."""
+        found = self.growth + self.skin - 2.0 * strayed
+        return found if found > min(self.growth, LEAST_GROWTH) else 0.0
 
     def cutoff(self, longest: float, periods) -> float:
         """How far lists reach, m, by the ``longest`` smoothing length of all; raises TooLarge where that does

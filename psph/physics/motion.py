@@ -15,6 +15,8 @@ Neither is integrated, so that particles never drift from where they belong, how
 
 from typing import NamedTuple
 
+import numpy as np
+
 from psph.fields import AXIAL, BUFFER, FLUID, MATRIX, OTHER, VECTOR, WALL, Field, Turned, VelocityGradient
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
@@ -135,3 +137,8 @@ def deforms(motion) -> bool:
 def is_rigid(motion) -> bool:
     """Whether a motion has a pose."""
     return hasattr(motion, "pose")
+
+
+def moments(end: float, count: int) -> np.ndarray:
+    """Times from 0 to ``end`` that no period divides: the golden section's multiples."""
+    return np.array([0.0, *(end * ((k * 0.6180339887498949) % 1.0) for k in range(1, count)), end])

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from psph.composition.mirrors import BELOW
+from psph.composition.reflections import BELOW
 from psph.errors import typed
 from psph.fields import FLUID, WALL
 from psph.output.diagnostics import moving_mass, total_energy, work_done

@@ -5,8 +5,10 @@ from typing import Any
 
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
+from psph.case.motion import motion_of
 from psph.case.shapes import Shape
-from psph.composition.mirrors import ABOVE, BELOW, Plane
+from psph.composition.reflections import ABOVE, BELOW, Plane
+from psph.physics.motion import is_rigid, moments
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.forms.joined import Less
 from psph.scene.forms.make import form_of
@@ -14,6 +16,9 @@ from psph.scene.forms.plain import Boxed
 from psph.scene.forms.shell import Coat
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import Corner
+
+LOOKS = 50
+"""Moments at which it is looked where a mirror goes."""
 
 
 def planes_of(case: Case, parts: Iterable[Any]) -> tuple[Plane, ...]:
@@ -100,7 +105,24 @@ def _of_wall(case: Case, name: str, wall, held: tuple[Corner, Corner]):
                     "of its own"
                 ]
             )
-        yield Plane(axis, side, at, wall.no_slip, wall.velocity or still)
+        motion = motion_of(wall.motion)
+        if motion is not None and not _goes_along(motion, axis, case.time.end):
+            raise CaseError(
+                [
+                    f"{case.file}: walls.{name}.motion: a mirror moves along its normal alone, here "
+                    f"{AXES[axis]}, and turns nowhere; give each face a wall of its own"
+                ]
+            )
+        yield Plane(axis, side, at, wall.no_slip, wall.velocity or still, motion)
+
+
+def _goes_along(motion, axis: int, end: float) -> bool:
+    """Whether a motion is one along an axis alone, till the ``end``, s."""
+    if not is_rigid(motion):
+        return False
+    poses = [motion.pose(t) for t in moments(end, LOOKS)]
+    across = [pose.velocity[d] for pose in poses for d in range(len(AXES)) if d != axis]
+    return not any(across) and not any(any(pose.angular_velocity) for pose in poses)
 
 
 def faces_before(

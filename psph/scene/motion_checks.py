@@ -9,9 +9,9 @@ import numpy as np
 from psph.case.errors import dotted
 from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN, RADIANS
-from psph.physics.motion import goes_free, is_rigid
+from psph.physics.motion import goes_free, is_rigid, moments
 from psph.physics.rigid.motion import MotionPart, Rigid
-from psph.scene.moving import MOMENTS, Sweep, frame_sweep, moments, moved_on, moving_parts, taken_back
+from psph.scene.moving import MOMENTS, Sweep, frame_sweep, moved_on, moving_parts, taken_back
 from psph.scene.scene import Scene
 
 FARTHEST = 2e9

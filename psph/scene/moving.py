@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.physics.motion import is_rigid, told_of
+from psph.physics.motion import is_rigid, moments, told_of
 from psph.physics.rigid.pose import PLACE, maps
 from psph.scene.census import Census
 from psph.scene.layout import Layout
@@ -30,11 +30,6 @@ class Sweep(NamedTuple):
     speed: float
     acceleration: float
     jump: float
-
-
-def moments(end: float, count: int) -> np.ndarray:
-    """Times from 0 to ``end`` that no period divides: the golden section's multiples."""
-    return np.array([0.0, *(end * ((k * 0.6180339887498949) % 1.0) for k in range(1, count)), end])
 
 
 @cache

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.composition.mirrors import BELOW
+from psph.composition.reflections import BELOW
 from psph.scene.lattice import Lattice, sites_between
 from psph.scene.layout import NONE, Layout
 

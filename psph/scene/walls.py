@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from psph.composition.mirrors import ABOVE, BELOW
+from psph.composition.reflections import ABOVE, BELOW
 from psph.scene.lattice import TOLERANCE
 from psph.scene.layout import NONE, Layout
 

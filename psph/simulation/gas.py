@@ -8,7 +8,6 @@ import numpy as np
 from psph.engine.threads import in_threads
 from psph.errors import Failed
 from psph.parallel.reductions import exact_sums, largest
-from psph.particles.sizes import GROWTH
 from psph.physics.gas.state import EVENNESS, HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
 from psph.simulation.gas_shares import find_shares, shares_of
 from psph.simulation.lengths import (
@@ -83,10 +82,11 @@ class Gases(Work):
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
         periods = (*scene.layout.periods, *(None,) * (AXES - scene.dimensions))
-        self._asked = Numbers(scene.dimensions, target, kernel, kernel.support, GROWTH, periods)
+        self._asked = Numbers(scene.dimensions, target, kernel, kernel.support, 1.0, periods)
 
-    def fit(self) -> bool:
-        """Find smoothing lengths and densities; whether lists reach far enough for that.  Collective.
+    def fit(self, growth: float, mirrors) -> bool:
+        """Find smoothing lengths and densities; whether lists reach far enough for that: by ``growth``
+        lengths may be larger than when they were made.  ``mirrors`` show images, or None.  Collective.
 
         Raises Unsized where there is no solution.
         """
@@ -97,7 +97,7 @@ class Gases(Work):
         self._each(
             find_lengths,
             store.low,
-            self._asked._replace(images=images_in(self._plan.mirrors, self._domain.cutoff)),
+            self._asked._replace(growth=growth, images=images_in(mirrors, self._domain.cutoff)),
             self._domain.lists,
             table_of(store["position"], store.value("mass"), store.total),
             store[LISTED_LENGTH.name],
@@ -184,7 +184,8 @@ class Gases(Work):
 
 
 def check_lists(simulation) -> None:
-    """Whether lists reach far enough for where the step has taken particles."""
+    """Whether lists reach far enough for where the step has taken particles, and mirrors."""
+    simulation.neighbourhood.move_mirrors(simulation.then)
     with simulation.ledger("skin"):
         simulation.listed = simulation.neighbourhood.skin.reach()
 
@@ -202,6 +203,7 @@ def find_sizes(simulation) -> None:
 def begin_sizes(simulation) -> None:
     """The same at the start, where the pressure of the case becomes heat."""
     gases = simulation.engine.of(Gases.name)
+    simulation.neighbourhood.move_mirrors(simulation.time)
     _fit(simulation, gases)
     gases.heat()
     gases.press()
@@ -211,12 +213,12 @@ def _fit(simulation, gases: Gases) -> None:
     """Smoothing lengths, and lists that reach far enough for them."""
     for _ in range(MOST_LISTS):
         with simulation.ledger("lengths"):
-            fits = gases.fit()
+            fits = gases.fit(simulation.neighbourhood.skin.growth, simulation.neighbourhood.mirrors)
         if fits:
             return
         simulation.rebuild()
         simulation.listed = False
     raise Unsized(
-        f"a particle finds too few neighbours after {MOST_LISTS} lists, each {GROWTH - 1:.0%} longer; put "
+        f"a particle finds too few neighbours after {MOST_LISTS} lists, each longer; put "
         "more particles around it, or let an axis be periodic"
     )

@@ -5,13 +5,14 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from psph.composition.mirrors import with_own_rows
+from psph.composition.reflections import moved
 from psph.fields import APART, WALL
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin, Unlisted
 from psph.parallel.straying import Straying
 from psph.particles.apart import part
 from psph.particles.neighbours import Neighbours, empty
-from psph.particles.planes import bring_back
+from psph.particles.planes import bring_back, check_apart
 from psph.particles.store import Store
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
@@ -31,6 +32,7 @@ class Neighbourhood:
     def __init__(self, scene, plan: Plan, store: Store, comm):
         layout = scene.layout
         self.plan, self.store = plan, store
+        self.planes, self.mirrors = plan.planes, plan.mirrors
         self.domain = Domain(
             comm,
             store,
@@ -42,6 +44,7 @@ class Neighbourhood:
         self.skin = self._skin(layout.reach.skin)
         self.wetting = [Wetting(one, plan, store, self.domain, layout.reach) for one in plan.marking]
         self._apart = empty(0, 0)
+        self._mirrors, self._lists = self.mirrors, self._apart
         self._columns: dict[tuple[float, ...], tuple[int, int]] = {}
         self.fit()
 
@@ -64,7 +67,7 @@ class Neighbourhood:
         ``spent`` are the seconds that this rank's pairs took since it was last done, by which slabs are cut;
         ``kinds`` of matter take out what is not to be met.
         """
-        bring_back(self.store, self.plan.planes, self.plan.materials.free)
+        bring_back(self.store, self.planes, self.plan.materials.free)
         self.domain.rebuild(spent)
         self.sort_out(kinds)
         self.skin.renew()
@@ -85,9 +88,18 @@ class Neighbourhood:
             wetting.settle()
         self.fit()
 
+    def move_mirrors(self, time: float) -> None:
+        """Those that move stand where they are at a ``time``, s; raises TooLarge where two come too near."""
+        if not any(plane.motion for plane in self.plan.planes):
+            return
+        self.planes = tuple(plane.then(time) if plane.motion else plane for plane in self.plan.planes)
+        check_apart(self.planes, self.domain.cutoff)
+        self.mirrors = moved(self.plan.mirrors, self.planes)
+        self._mirrors = self._mirrors._replace(reflections=self.mirrors.reflections)
+
     def fit(self) -> None:
         """Room for the images of every particle behind the entries of the lists."""
-        mirrors = self.plan.mirrors
+        mirrors = self.mirrors
         if mirrors is not None and self.plan.sizes is not None:
             mirrors = mirrors._replace(reach=self.domain.cutoff)
         self._mirrors, self._lists = with_own_rows(mirrors, self.store.total, self.domain.lists)

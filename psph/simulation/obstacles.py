@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.composition.mirrors import BELOW
+from psph.composition.reflections import BELOW
 from psph.physics.motion import Fixed, is_rigid
 from psph.physics.rigid.body import RigidBody
 from psph.scene.forms.form import Faces, Form

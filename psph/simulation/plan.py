@@ -8,7 +8,7 @@ from typing import Any
 
 from psph.composition.count import flops_per_pair
 from psph.composition.loads import Loads
-from psph.composition.mirrors import mirrors_of
+from psph.composition.reflections import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import (

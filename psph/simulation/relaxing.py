@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.composition.mirrors import mirrors_of
+from psph.composition.reflections import mirrors_of
 from psph.engine.jit import elementwise
 from psph.engine.threads import in_threads
 from psph.fields import LISTED_POSITION, POSITION, VECTOR, Field, view_of

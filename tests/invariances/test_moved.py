@@ -31,7 +31,13 @@ MOVED = (
 )
 """A scene of each kind of matter, and walls that show a pressure of their own, and tensions."""
 
-HELD = ("body in a surface", "jointed bodies", "moored bodies", "chained bodies", "moored bodies on wet soils")
+HELD = (
+    "body in a surface",
+    "jointed bodies",
+    "moored bodies",
+    "chained bodies",
+    "moored bodies on wet soils",
+)
 """Scenes with mirrors, hinges, joints and lines to places in space: what drifts would leave them."""
 
 NO_SHIFT = {"position_shift": "off"}

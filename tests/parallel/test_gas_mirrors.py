@@ -28,6 +28,17 @@ velocity = ["1 - x", "0.5 - y"]
 jitter = 0.3
 """
 
+PISTON = (
+    ROOM.replace(', symmetry = ["x.lower"]', "")
+    + """
+[walls.piston]
+condition = "mirror"
+shape.box = { lower = [-0.1, -0.1], upper = [0.0, 1.1] }
+motion = { sinusoid = { amplitude = [0.2, 0.0], frequency = 8.0 } }
+"""
+)
+"""The same before a piston that shakes."""
+
 
 def rows(simulation):
     """All particles by id."""
@@ -38,8 +49,9 @@ def rows(simulation):
 
 
 @pytest.mark.core
-def test_same_bits_in_a_room(mpi_tmp_path):
-    case = written(mpi_tmp_path, ROOM)
+@pytest.mark.parametrize("text", [ROOM, PISTON])
+def test_same_bits_in_a_room(text, mpi_tmp_path):
+    case = written(mpi_tmp_path, text)
     single, together = start(case, MPI.COMM_SELF), start(case, MPI.COMM_WORLD)
     for _ in range(40):
         single.step()
@@ -47,6 +59,6 @@ def test_same_bits_in_a_room(mpi_tmp_path):
     assert np.array_equal(rows(single), rows(together))
 
 
-@pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
-def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
-    go_on_elsewhere(written(mpi_tmp_path, ROOM), before, after, mpi_tmp_path)
+@pytest.mark.parametrize("text, before, after", [(ROOM, 1, 2), (PISTON, 1, 2), (PISTON, 2, 1)])
+def test_a_resume_on_other_ranks_goes_on_alike(text, before, after, mpi_tmp_path):
+    go_on_elsewhere(written(mpi_tmp_path, text), before, after, mpi_tmp_path)

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 from stores import store_of
 
-from psph.composition.mirrors import ABOVE, BELOW, Plane
+from psph.composition.reflections import ABOVE, BELOW, Plane
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin
 from psph.particles.drift import bounding_boxes, largest_differences

@@ -102,17 +102,23 @@ def test_forces_keep_momentum_angular_momentum_and_energy_to_rounding(tmp_path, 
     assert abs(gained.sum()) > 1e-3 * np.abs(work).sum()  # something is exchanged
 
 
+def fit(simulation):
+    """Lengths and densities at the places of now."""
+    around = simulation.neighbourhood
+    assert simulation.engine.of(Gases.name).fit(around.skin.growth, around.mirrors)
+
+
 def compression(simulation, step):
     """p/ρ² dρ/dt by a difference: all move with their velocities, and sizes are found anew."""
     found = []
     for way in (1.0, -1.0):
         for x, v in zip(simulation.store["position"], simulation.store["velocity"]):
             x += way * step * v
-        simulation.engine.of(Gases.name).fit()
+        fit(simulation)
         found += of(simulation, "density")
         for x, v in zip(simulation.store["position"], simulation.store["velocity"]):
             x -= way * step * v
-    simulation.engine.of(Gases.name).fit()
+    fit(simulation)
     p, rho = of(simulation, "pressure", "density")
     return p / rho**2 * (found[0] - found[1]) / (2.0 * step)
 

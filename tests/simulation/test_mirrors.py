@@ -10,7 +10,8 @@ from gauging import start
 from numba import njit
 
 from psph.case import CaseError
-from psph.composition.mirrors import ABOVE, BELOW, Plane, at_look, image, images, mirrors_of
+from psph.composition.mirrors import at_look, image, images
+from psph.composition.reflections import ABOVE, BELOW, Plane, mirrors_of
 from psph.fields import (
     MATRIX,
     OF_EVERY_SCENE,

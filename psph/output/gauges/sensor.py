@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.composition.mirrors import BELOW
+from psph.composition.reflections import BELOW
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.points import disc
 from psph.parallel.reductions import exact_sums

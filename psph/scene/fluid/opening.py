@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from psph.composition.mirrors import ABOVE, BELOW
+from psph.composition.reflections import ABOVE, BELOW
 from psph.kinds import in_case
-from psph.physics.motion import goes_free, is_rigid
+from psph.physics.motion import goes_free, is_rigid, moments
 from psph.scene.census import Census
 from psph.scene.columns import connected
 from psph.scene.lattice import TOLERANCE, sites_between
-from psph.scene.moving import moments, moved_on, taken_back
+from psph.scene.moving import moved_on, taken_back
 from psph.scene.shapes import inside
 from psph.scene.walls import touches_air
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from psph.composition.mirrors import ABOVE, BELOW
+from psph.composition.reflections import ABOVE, BELOW
 from psph.physics.fluid.rheology import Granular, HerschelBulkley
 from psph.scene.census import Census
 from psph.scene.layout import Layout

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.composition.mirrors import ABOVE, BELOW
+from psph.composition.reflections import ABOVE, BELOW
 from psph.physics.rigid.pose import in_space, inertia
 from psph.rows import projected
 from psph.scene.census import Census
