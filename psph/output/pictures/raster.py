@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from psph.case.keys import AXES
-from psph.composition.mirrors import BELOW, Plane
+from psph.composition.reflections import BELOW, Plane
 from psph.fields import WALL
 from psph.output.columns import Pixels, columns, kernel_column, mirrored, with_images
 from psph.output.export.parts import Exported
