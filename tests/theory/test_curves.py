@@ -174,6 +174,15 @@ def test_what_goes_over_a_crest_wave_by_wave():
         overtopping.largest_wave(Curve(TIME, np.ones(len(TIME))), 1.0)
 
 
+@pytest.mark.parametrize("step", (0.02, 0.1, 0.2))
+def test_a_wave_over_a_crest_is_one_wave_however_sparse_the_rows(step):
+    """Where the time from row to row counted as one without overtopping, each row was a wave: 7, of 5 L/m."""
+    time = np.arange(0.0, 5.0, step)
+    beyond = 0.01 * np.clip((time - 1.0) / 0.4, 0.0, 1.0) + 0.02 * np.clip((time - 3.0) / 0.4, 0.0, 1.0)
+    assert overtopping.number_of_waves(Curve(time, beyond), 0.1).value == 2.0
+    assert overtopping.largest_wave(Curve(time, beyond), 0.1).value == pytest.approx(20.0)
+
+
 def test_rows_without_a_value_are_left_out_and_one_row_has_little():
     gap = np.where((TIME > 2.0) & (TIME < 3.0), np.nan, TIME)
     assert moments.mean(Curve.of(TIME, gap)).value == pytest.approx(5.0)

@@ -21,10 +21,11 @@ def discharge(curve: Curve) -> CurveNumber:
 
 def waves(curve: Curve, rest: float) -> list[tuple[float, float]]:
     """When each wave begins to go over, s, and its volume, m³/m: rises of the largest volume so far, apart
-    where there is none for ``rest`` s."""
+    where there is none for ``rest`` s, from the end of one to the begin of the next: rows may be sparser."""
     rises = np.diff(np.maximum.accumulate(curve.value))
     rows = np.flatnonzero(rises > 0.0)
-    parts = np.split(rows, np.flatnonzero(np.diff(curve.time[rows]) > rest) + 1) if len(rows) else []
+    pauses = curve.time[rows[1:]] - curve.time[rows[:-1] + 1]
+    parts = np.split(rows, np.flatnonzero(pauses > rest) + 1) if len(rows) else []
     found = [(float(curve.time[part[0]]), float(rises[part].sum())) for part in parts]
     return [one for one in found if one[1] > LEAST * float(rises.sum())]
 
