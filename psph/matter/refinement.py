@@ -14,7 +14,7 @@ from psph.scene.shapes import bounds
 from psph.simulation.levels import CORNER, DIVIDED, LENGTH, Resizing
 from psph.work import Rank, Stage, Work
 
-SKIN = 0.16
+SKIN = 0.32
 """Part of the support by which lists reach farther at the least: how far each particle strays counts here,
 not how far two come nearer."""
 
@@ -54,9 +54,10 @@ class Refinement(Kind):
 
     @property
     def sizes(self) -> Sizes:
-        """By the level of each particle."""
+        """By the level of each particle; only who follows looks at other levels."""
         skin = max(SKIN, self.scene.case.neighbours.skin)
-        return Sizes(self.scene.kernel.support, skin, LENGTH, LENGTH, growth=1.0)
+        follows = np.array([one.is_fluid and not one.mobile for one in self.scene.species])
+        return Sizes(self.scene.kernel.support, skin, LENGTH, LENGTH, growth=1.0, across=follows)
 
     @property
     def levels(self) -> Levels:

@@ -147,8 +147,9 @@ class Domain:
         self.halo.refresh(self.ghost_fields + self.refreshed + told)
         if self.sizes is not None:
             store, listed = self.store, self.store[self.sizes.listed]
+            across = self.sizes.looks_across(store.group[: store.total])
             self.lists = list_by_levels(
-                self._used_lists(), store["position"], listed, self.sizes, self._slab(), lanes
+                self._used_lists(), store["position"], listed, across, self.sizes, self._slab(), lanes
             )
             return
         self.lists = neighbours.build(

@@ -84,17 +84,22 @@ class Grids(NamedTuple):
 
 
 class OwnedRows(NamedTuple):
-    """OwnedRows to fill: of the ``owned`` columns from ``low`` on, up to a ``multiple`` of entries."""
+    """OwnedRows to fill: of the ``owned`` columns from ``low`` on, up to a ``multiple`` of entries;
+    ``across`` (n,) says who of the grids looks beyond its own level."""
 
     low: int
     owned: int
     multiple: int
+    across: np.ndarray
 
 
-def list_by_levels(room: Neighbours, position, listed, sizes: Sizes, slab: Slab, lanes: int) -> Neighbours:
+def list_by_levels(
+    room: Neighbours, position, listed, across: np.ndarray, sizes: Sizes, slab: Slab, lanes: int
+) -> Neighbours:
     """Lists of the owned particles: of all that are nearer than the larger reach of both.
 
-    ``position`` are component arrays and ``listed`` the smoothing lengths, m, of all columns.  OwnedRows are
+    ``position`` are component arrays and ``listed`` the smoothing lengths, m, of all columns; who does not
+    look ``across`` (columns,) lists its own level alone.  OwnedRows are
     filled up to a multiple of ``lanes`` with the particle itself.  ``room`` is used again where it is large
     enough.
     """
@@ -102,11 +107,12 @@ def list_by_levels(room: Neighbours, position, listed, sizes: Sizes, slab: Slab,
         return empty(0, 0)
     total = slab.low + slab.owned + slab.high
     grids = grids_of([x[:total] for x in position], sizes.reach(listed[:total]), slab)
+    across = across[grids.columns]
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
     while True:
-        rows = OwnedRows(slab.low, slab.owned, lanes)
+        rows = OwnedRows(slab.low, slab.owned, lanes, across)
         needed = max(in_threads(fill_levels, 0, len(grids.keys), grids, rows, room))
         if needed == 0:
             return room
@@ -295,6 +301,18 @@ def within(grids, level, place, first, last):
     return found, close
 
 
+@inside
+def of_level(grids, level, ranges, many):
+    """Which of the ``ranges``, from one to before another, are of a level: they come level by level."""
+    first, last = grids.starts[grids.base[level]], grids.starts[grids.base[level + 1]]
+    least, most = 0, many
+    while least < most and ranges[least, 0] < first:
+        least += 1
+    while most > least and ranges[most - 1, 0] >= last:
+        most -= 1
+    return least, most
+
+
 def near_bits(x_i, within2_i, grids, m):
     """Bit t says whether particle ``m + t`` of the grids lies within its reach of ``x_i``, or within that of
     this one, whose square is ``within2_i``."""
@@ -312,11 +330,11 @@ def _typed_near_bits(x_i, within2_i, grids, m):
 
 
 @inside
-def append_row(entries, end, m, grids, ranges, many):
-    """Write the columns of the neighbours of particle ``m`` of the grids behind ``end``; returns the new
-    end."""
+def append_row(entries, end, m, grids, ranges, least, most):
+    """Write the columns of the neighbours of particle ``m`` of the grids behind ``end``, of those in the
+    ``ranges`` from number ``least`` to before ``most``; returns the new end."""
     x_i, within2_i, first, one = at(grids.position, m), grids.within2[m], end, np.uint64(1)
-    for r in range(many):
+    for r in range(least, most):
         stop = np.uint64(ranges[r, 1])
         for n in range(np.uint64(ranges[r, 0]), stop, width_of(grids.within2)):
             others = (one << min(np.uint64(LANES), stop - n)) - one
@@ -344,6 +362,7 @@ def fill_levels(first, last, grids, rows, room):
         # The particles of a cell have the same candidates.
         low, high, reach = extent(grids, starts[cell], starts[cell + 1])
         ranges, many, held = candidates(grids, low, high, reach, ranges)
+        own = of_level(grids, level, ranges, many)
         for m in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
             k = np.int64(grids.columns[m])
             row = k - rows.low
@@ -353,7 +372,8 @@ def fill_levels(first, last, grids, rows, room):
                 done = np.int64(m) - starts[first] + 1
                 guess = (np.int64(end) - begun + held) * starts[len(starts) - 1] // done
                 return max(guess, len(entries)) + held + rows.multiple
-            begin, end = end, append_row(entries, end, m, grids, ranges, many)
+            least, most = (0, many) if rows.across[m] else own
+            begin, end = end, append_row(entries, end, m, grids, ranges, least, most)
             room.begin[row], room.lengths[row] = begin, end - begin
             while (end - begin) % np.uint64(rows.multiple) != np.uint64(0):
                 entries[end] = k

@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from psph.errors import Failed
 
 GROWTH = 1.1
@@ -24,7 +26,9 @@ class Sizes(NamedTuple):
     """Where sizes differ: the kernel's ``support`` over h, the ``skin`` as a part of it, and the names of the
     fields that hold h, the ``length``, and that of when lists were made, ``listed``; ``between`` is the
     shortest distance of two mirrors across one axis, m.  Lists reach ``growth`` + ``skin`` times the support:
-    the ways that both of a pair have strayed, and what lengths have grown by, share what is more than 1."""
+    the ways that both of a pair have strayed, and what lengths have grown by, share what is more than 1.
+    ``across`` (groups,) says which groups list others of all levels of sizes, and not of their own alone;
+    None: all do."""
 
     support: float
     skin: float
@@ -32,10 +36,15 @@ class Sizes(NamedTuple):
     listed: str
     between: float = math.inf
     growth: float = GROWTH
+    across: np.ndarray | None = None
 
     def reach(self, length):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""
         return (self.growth + self.skin) * self.support * length
+
+    def looks_across(self, group: np.ndarray) -> np.ndarray:
+        """Whether particles of some ``group`` (n,) list others of all levels (n,)."""
+        return np.ones(len(group), np.bool_) if self.across is None else self.across[group]
 
     def growth_left(self, strayed: float) -> float:
         """By how much h may have grown since lists were made, where particles have ``strayed`` by this part

@@ -3,6 +3,9 @@
 f = f₀ + f₁·t + t·f₂·t over all that lead around, of whatever level, by least squares with the weights V W,
 each by its own smoothing length.  Where they are too few for a term it is left out.  What is linear blurs a
 vortex of five spacings: it loses a tenth of its energy at a border, with terms of second order a hundredth.
+
+f₀ = Σ_j c_j f_j, where c_j rests on places alone: it is found where lists are made, and serves until new ones
+are.  All move with the flow in between, and a flow that is linear around leaves Σ_j c_j x_jk = 0.
 """
 
 from typing import Any, NamedTuple
@@ -13,7 +16,7 @@ from psph.engine.jit import elementwise
 from psph.formula import helper
 from psph.simulation.least_squares import factor, solve
 from psph.smoothing import weight
-from psph.vectors import at, dot, nearest_image, subtract
+from psph.vectors import at, dot, nearest_image, put, subtract
 
 FLAT = 0.01
 """Variance of a term of the fit, in spacings, less what terms before it tell, below which it is left out."""
@@ -27,114 +30,168 @@ FULL = 0.85
 ORDER = 2
 """Of the fit."""
 
-FITTED = 1
-"""Column of what is seen from which on fitted values are; before it is Σ V W."""
-
 
 class Leaders(NamedTuple):
     """Who is seen: rows of the ``own`` level and of ``others``, of the particles from column ``low`` on; who
-    ``leads`` (columns,), and the smoothing ``length`` of each, m (columns,)."""
+    ``leads`` (columns,), the smoothing ``length`` of each, m, and its ``position``, m, where it was listed
+    (columns,)."""
 
     low: int
     own: Any
     others: Any
     leads: np.ndarray
     length: np.ndarray
+    position: Any
+
+
+class Weighed(NamedTuple):
+    """How they are weighed: by a ``kernel`` with h = 1 m, times ``cell``, dx^d/h^d of every level;
+    ``periods`` in m or None; the ``order`` of the fit."""
+
+    kernel: Any
+    cell: float
+    periods: tuple
+    order: int
+
+
+class Followed(NamedTuple):
+    """Whom each of some particles follows: from ``begin`` (n,) on ``many`` (n,) entries, the ``column`` and
+    the ``share`` c of each; none is kept where ``begin`` is empty.  ``longest`` is the longest row."""
+
+    begin: np.ndarray
+    many: np.ndarray
+    column: np.ndarray
+    share: np.ndarray
+    longest: int
 
 
 class OfLeaders(NamedTuple):
-    """The arrays of all columns that are read (columns,): what the forces read."""
+    """The arrays of all columns that are read of those who lead, what forces read, and written of those who
+    follow (columns,)."""
 
-    position: Any
     velocity: Any
+    predicted: Any
     volume: Any
     pressure: Any
-    mass: Any
+    density: Any
 
 
 class LevelFit(NamedTuple):
-    """Room for a fit: its ``terms`` (n,) 1, t and tt, Σw times their products ``square`` (n, n), Σw times
-    them times the values ``right`` (n, 2 + dim), and ``share`` (n,), what of each of these makes f₀."""
+    """Room for a fit: its ``terms`` (n,) 1, t and tt, Σw times their products ``square`` (n, n), and
+    ``share`` (n,), what of Σw times each makes f₀; ``place`` (longest, dim), in spacings, of entries."""
 
     terms: np.ndarray
     square: np.ndarray
-    right: np.ndarray
     share: np.ndarray
+    place: np.ndarray
 
 
 @helper
-def room_for(dimensions, order):
+def room_for(dimensions, order, longest):
     """LevelFit for a fit of an ``order``."""
     n = 1 if order == 0 else 1 + dimensions if order == 1 else (dimensions + 1) * (dimensions + 2) // 2
-    return LevelFit(np.zeros(n), np.zeros((n, n)), np.zeros((n, 2 + dimensions)), np.zeros(n))
+    return LevelFit(np.zeros(n), np.zeros((n, n)), np.zeros(n), np.empty((longest, dimensions)))
 
 
 @elementwise
-def see_leaders(first, last, columns, scale, unit, periods, leaders, shown, order, seen):
-    """What each of some ``columns`` (n,) sees of those who lead, from the ``first`` to the one before the
-    ``last``, by a fit of an ``order``.
+def follow(first, last, columns, scale, leaders, weighing, anew, followed, state, fall):
+    """Give some ``columns`` (n,) the state of those they follow, from the ``first`` to the one before the
+    ``last``; ``scale`` (n,) m is the spacing of those.
 
-    ``scale`` (n,) m is the spacing of those; ``unit`` the kernel with h = 1 m; ``seen`` (n, FITTED + 2 + dim)
-    gets Σ V W, then density, kg/m^d, pressure, Pa, and velocity, m/s.
+    With ``anew`` whom they follow is found first.  Whoever has too few falls, by ``fall`` (dim,) m/s.
     """
-    room = room_for(len(shown.position), order)
+    kept = len(followed.begin) > 0
+    column, share = followed.column, followed.share
+    if not kept:
+        column, share = np.empty(followed.longest, np.uint32), np.empty(followed.longest)
+    room = room_for(len(leaders.position), weighing.order, followed.longest)
     for n in range(first, last):
         k = np.uint64(columns[n])
-        room.square[:], room.right[:] = 0.0, 0.0
-        _take_row(k, scale[n], unit, periods, leaders, leaders.own, shown, room)
-        _take_row(k, scale[n], unit, periods, leaders, leaders.others, shown, room)
-        seen[n, :] = 0.0
-        seen[n, 0] = room.square[0, 0]
-        if seen[n, 0] > TOO_FEW:
-            factor(room.square, FLAT)
-            few = 1 + len(shown.position) if seen[n, 0] < FULL else len(room.share)
-            count = min(few, len(room.share))
-            solve(room.square, room.share, count)
-            for value in range(room.right.shape[1]):
-                for one in range(count):
-                    seen[n, FITTED + value] += room.share[one] * room.right[one, value]
+        begin = followed.begin[n] if kept else 0
+        if anew:
+            followed.many[n] = find(k, scale[n], leaders, weighing, room, column[begin:], share[begin:])
+        many = followed.many[n]
+        if many:
+            take_after(k, column[begin : begin + many], share[begin : begin + many], state)
+        else:
+            for d in range(len(fall)):
+                state.velocity[d][k] += fall[d]
+        put(state.predicted, k, at(state.velocity, k))
 
 
 @helper
-def _take_row(k, scale, unit, periods, leaders, lists, shown, room):
-    """Take those who lead in a row into the sums of column ``k``."""
-    row, dim = k - np.uint64(leaders.low), len(shown.position)
+def find(k, scale, leaders, weighing, room, column, share):
+    """The columns whom ``k`` follows and their shares, by a fit; returns how many there are."""
+    dim = len(leaders.position)
+    room.square[:] = 0.0
+    many = take_row(k, scale, leaders, leaders.own, weighing, room, column, share, 0)
+    many = take_row(k, scale, leaders, leaders.others, weighing, room, column, share, many)
+    total = room.square[0, 0]
+    if total <= TOO_FEW:
+        return 0
+    factor(room.square, FLAT)
+    count = min(1 + dim, len(room.share)) if total < FULL else len(room.share)
+    solve(room.square, room.share, count)
+    for n in range(many):
+        set_terms(dim, room.place[n], room.terms)
+        part = 0.0
+        for one in range(count):
+            part += room.share[one] * room.terms[one]
+        share[n] *= part
+    return many
+
+
+@helper
+def take_row(k, scale, leaders, lists, weighing, room, column, share, many):
+    """Take those who lead in a row into the sums of column ``k``, behind ``many`` entries; returns how many
+    there are then."""
+    row, dim = k - np.uint64(leaders.low), len(leaders.position)
     entry, last = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
     while entry < last:
         j = np.uint64(lists.lists[entry])
         entry += np.uint64(1)
-        if leaders.leads[j]:
-            x_jk = nearest_image(subtract(at(shown.position, j), at(shown.position, k)), periods)
-            inverse = 1.0 / leaders.length[j]
-            w = (
-                weight(unit, np.sqrt(dot(x_jk, x_jk)) * inverse)
-                * inverse**dim
-                * shown.mass[j]
-                * shown.volume[j]
-            )
-            if w > 0.0:
-                _set_terms(dim, x_jk, scale, room.terms)
-                density = 1.0 / shown.volume[j]
-                for one in range(len(room.terms)):
-                    part = w * room.terms[one]
-                    for other in range(one + 1):
-                        room.square[one, other] += part * room.terms[other]
-                    room.right[one, 0] += part * density
-                    room.right[one, 1] += part * shown.pressure[j]
-                    for d in range(dim):
-                        room.right[one, 2 + d] += part * shown.velocity[d][j]
+        if not leaders.leads[j]:
+            continue
+        x_jk = nearest_image(subtract(at(leaders.position, j), at(leaders.position, k)), weighing.periods)
+        w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / leaders.length[j])
+        if w > 0.0:
+            for d in range(dim):
+                room.place[many, d] = x_jk[d] / scale
+            column[many], share[many] = j, w
+            set_terms(dim, room.place[many], room.terms)
+            for one in range(len(room.terms)):
+                part = w * room.terms[one]
+                for other in range(one + 1):
+                    room.square[one, other] += part * room.terms[other]
+            many += 1
+    return many
 
 
 @helper
-def _set_terms(dim, x, scale, terms):
-    """1, t and tt, as many as there are, of a place ``x`` beside a particle, m, in units of ``scale``."""
+def set_terms(dim, x, terms):
+    """1, t and tt, as many as there are, of a place ``x`` (dim,) beside a particle, in spacings."""
     terms[0] = 1.0
     if len(terms) > 1:
         for d in range(dim):
-            terms[1 + d] = x[d] / scale
+            terms[1 + d] = x[d]
     n = 1 + dim
     if len(terms) > n:
         for one in range(dim):
             for other in range(one, dim):
-                terms[n] = terms[1 + one] * terms[1 + other]
+                terms[n] = x[one] * x[other]
                 n += 1
+
+
+@helper
+def take_after(k, column, share, state):
+    """Column ``k`` gets the sums of ``share`` (n,) times what each ``column`` (n,) has."""
+    density, pressure = 0.0, 0.0
+    for n in range(len(column)):
+        density += share[n] / state.volume[column[n]]
+        pressure += share[n] * state.pressure[column[n]]
+    state.density[k], state.volume[k], state.pressure[k] = density, 1.0 / density, pressure
+    for d in range(len(state.velocity)):
+        v = 0.0
+        for n in range(len(column)):
+            v += share[n] * state.predicted[d][column[n]]
+        state.velocity[d][k] = v

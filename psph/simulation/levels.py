@@ -14,7 +14,7 @@ from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, part_levels
 from psph.particles.neighbours import empty
 from psph.scene.levels import REACHES, Levels
-from psph.simulation.level_fit import FITTED, ORDER, TOO_FEW, Leaders, OfLeaders, see_leaders
+from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
 from psph.work import Rank, Work
@@ -67,9 +67,10 @@ class Resizing(Work):
             np.uint8,
         )
         self.counts = np.zeros((self.levels.count, 4), np.int64)
-        self._unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
-        self._periods = tuple(scene.layout.periods)
-        self._see, self._go = settled(see_leaders), settled(go_along)
+        cell = (scene.spacing / scene.smoothing_length) ** scene.dimensions
+        unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
+        self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER)
+        self._follow, self._go = settled(follow), settled(go_along)
         self._lanes = rank.plan.space.lanes
         self._led = empty(0, 0)
         self.columns = np.zeros(0, np.int64)
@@ -143,14 +144,24 @@ class Resizing(Work):
         follows, leads = self.follows[group], fluid & ~self.follows[group]
         store = self.store
         reach2 = self.plan.sizes.reach(store[LENGTH][: store.total]) ** 2
-        of = Membership(level, follows, leads, tuple(store["position"]), reach2, self._periods)
+        listed, periods = tuple(store["listed_position"]), self._weighing.periods
+        of = Membership(level, follows, leads, listed, reach2, periods)
         self._led = part_levels(self.domain.lists, store.low, store.owned, of, self._lanes)
         own, deep, finer = self._followers(np.flatnonzero(follows[store.inner]))
-        self.columns, self._leads, self._near = store.low + own, leads, int(np.count_nonzero(~deep))
+        self.columns, near = store.low + own, np.count_nonzero(~deep)
+        self._leaders = Leaders(store.low, self.domain.lists, self._led, leads, store[LENGTH], listed)
         self._scale = self.levels.layout.spacing * 0.5 ** np.where(
             finer, level[self.columns] + 1, level[self.columns] - 1.0
         )
-        self._seen = np.zeros((len(own), FITTED + 2 + store.dimensions))
+        seen = self.domain.lists.lengths[own].astype(np.int64) + self._led.lengths[own]
+        longest, ends = int(seen.max(initial=0)), np.cumsum(seen[:near])
+        size, many = int(ends[-1]) if near else 0, np.zeros(len(own), np.int64)
+        self._near = Followed(
+            ends - seen[:near], many[:near], np.empty(size, np.uint32), np.empty(size), longest
+        )
+        none = np.zeros(0, np.int64)
+        self._deep = Followed(none, many[near:], np.empty(0, np.uint32), np.empty(0), longest)
+        self._anew = True
 
     def _followers(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Some rows, those last that are deep in a finer region, where nobody sees them who leads; whether
@@ -182,25 +193,20 @@ class Resizing(Work):
                 self.domain.halo.refresh(self.plan.refreshed)
             simulation.listed = False  # ghosts are fresh, but for what follows
         with self.ledger("refine"):
-            self._impose(simulation.dt, simulation.steps % SELDOM == 0)
+            near, fall = len(self._near.many), simulation.dt * self.gravity
+            self._impose(slice(0, near), self._near, self._anew, fall)
+            self._anew = False
+            if simulation.steps % SELDOM == 0:
+                self._impose(slice(near, None), self._deep, True, fall)
 
-    def _impose(self, dt: float, all_of_them: bool) -> None:
-        many = len(self.columns) if all_of_them else self._near
-        store, seen, columns = self.store, self._seen[:many], self.columns[:many]
-        leaders = Leaders(store.low, self.domain.lists, self._led, self._leads, store[LENGTH])
-        names = "position", "predicted_velocity", "specific_volume", "pressure", "mass"
-        shown = OfLeaders(*(store[name] for name in names))
-        told = columns, self._scale, self._unit, self._periods, leaders, shown, ORDER, seen
-        in_threads(self._see, 0, many, *told)
-        sees = seen[:, 0] > TOO_FEW
-        led, found = columns[sees], seen[sees, FITTED:].T
-        store["density"][led], store["specific_volume"][led] = found[0], 1.0 / found[0]
-        store["pressure"][led] = found[1]
-        alone = columns[~sees]
-        for d, (v, predicted) in enumerate(zip(store["velocity"], store["predicted_velocity"])):
-            v[led] = found[2 + d]
-            v[alone] += dt * self.gravity[d]
-            predicted[columns] = v[columns]
+    def _impose(self, some: slice, followed: Followed, anew: bool, fall: np.ndarray) -> None:
+        """The state of ``some`` of them, by those whom they have ``followed`` since lists were made, or
+        ``anew``."""
+        names = "velocity", "predicted_velocity", "specific_volume", "pressure", "density"
+        state = OfLeaders(*(self.store[name] for name in names))
+        columns, scale = self.columns[some], self._scale[some]
+        told = columns, scale, self._leaders, self._weighing, anew, followed, state, fall
+        in_threads(self._follow, 0, len(columns), *told)
 
     def after_sums(self, time: float, dt: float) -> None:
         """Forces do not act on who follows."""

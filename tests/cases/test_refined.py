@@ -7,7 +7,9 @@ from gauging import start
 from long import LONG
 from mpi4py import MPI
 from parallel.test_simulation import state
+from runs.resuming import go_on_alike, keep, steps, taken_up
 
+from psph.case import load
 from psph.output.ledger import Ledger
 from psph.runs.setup import compile_ahead, create_particles
 from psph.scene import Scene
@@ -99,7 +101,7 @@ def test_still_water_has_no_step_of_pressure_at_the_border(factor, tmp_path):
 def reflected(folder, monkeypatch, order):
     """What comes back of a pulse of sound, ten spacings wide, that has gone into a finer part, over it."""
     monkeypatch.setattr(levels, "ORDER", order)
-    case = stream(folder, length=2.0, width=0.2, lower=1.0, upper=2.0, speed=0.0)
+    case = stream(folder, length=2.0, width=0.24, lower=1.0, upper=2.0, speed=0.0)
 
     def pulse(x):
         return 0.01 * np.exp(-0.5 * ((x[:, 0] - 0.5) / 0.1) ** 2)
@@ -174,23 +176,37 @@ def test_the_coarsest_are_neither_born_nor_die(tmp_path):
     assert "level 1" in list(work.passed())[1]
 
 
-@pytest.mark.mpi(min_size=2)
-def test_same_bits_where_particles_are_born_and_die(tmp_path):
-    folder = MPI.COMM_WORLD.bcast(tmp_path)
-    folder.mkdir(parents=True, exist_ok=True)
+def together(folder):
+    """The stream in which particles are born and die, as all ranks read it."""
     if MPI.COMM_WORLD.rank == 0:
         stream(folder, length=0.6, width=0.3, lower=0.3, upper=0.6, speed=2.0)
     MPI.COMM_WORLD.Barrier()
-    case = stream(tmp_path, length=0.6, width=0.3, lower=0.3, upper=0.6, speed=2.0)
+    case = load(folder / "case.toml")
     scene = Scene(case)
     compile_ahead(scene, make_plan(scene), MPI.COMM_WORLD)
-    together, single = (start(case, comm) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
-    for simulation in (together, single):
-        for _ in range(40):
-            simulation.step()
+    return case
+
+
+@pytest.mark.mpi(min_size=2)
+def test_same_bits_where_particles_are_born_and_die(mpi_tmp_path):
+    case = together(mpi_tmp_path)
+    many, single = (steps(case, comm, 40) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
     assert single.engine.of("refine").counts[1, levels.BORN] > 0
-    (rows, *_), (alone, *_) = state(together), state(single)
+    (rows, *_), (alone, *_) = state(many), state(single)
     assert np.array_equal(rows, alone)
+
+
+@pytest.mark.mpi(min_size=2)
+def test_goes_on_on_one_rank_where_many_stopped(mpi_tmp_path):
+    """Amid the life of lists and of who is followed."""
+    case = together(mpi_tmp_path)
+    simulation = steps(case, MPI.COMM_WORLD, 36)
+    lists = simulation.domain.rebuilds
+    simulation.step()
+    assert simulation.domain.rebuilds == lists
+    written = keep(simulation, case, mpi_tmp_path)
+    MPI.COMM_WORLD.Barrier()
+    go_on_alike(simulation, taken_up(case, written, MPI.COMM_SELF), 60)
 
 
 def test_levels_nest(tmp_path):

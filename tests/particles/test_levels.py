@@ -40,7 +40,9 @@ def test_lists_have_all_neighbours_and_no_others(dimensions, ratio, periodic):
     periods = (None, *[1.0 if periodic else None] * (dimensions - 1))
     cutoff = SIZES.reach(length.max())
     slab = Slab(0, 0.0, 1.0, 0, n, 0, periods, (0.0,) * dimensions, cutoff)
-    lists = list_by_levels(empty(0, 0), tuple(position), length, SIZES, slab, 4)
+    lists = list_by_levels(
+        empty(0, 0), tuple(position), length, np.ones(len(length), np.bool_), SIZES, slab, 4
+    )
     expected = all_pairs(position, length, periods)
     for k, row in enumerate(expected):
         begin, many = int(lists.begin[k]), int(lists.lengths[k])
@@ -53,7 +55,7 @@ def test_a_cell_ends_with_its_level():
     """The first cell of the finer level has a number by one lower than the last of the coarser."""
     length = np.array([1.0, 0.5]) / SIZES.reach(1.0)
     slab = Slab(0, 0.0, 2.0, 0, 2, 0, (None,), (0.0,), 1.0)
-    lists = list_by_levels(empty(0, 0), (np.array([1.1, 0.3]),), length, SIZES, slab, 1)
+    lists = list_by_levels(empty(0, 0), (np.array([1.1, 0.3]),), length, np.ones(2, np.bool_), SIZES, slab, 1)
     assert [lists.lists[int(begin)] for begin in lists.begin[:2]] == [1, 0]
     assert lists.lengths[:2].tolist() == [1, 1]
 
@@ -68,7 +70,9 @@ def test_ghosts_across_a_seam_are_seen_once(dimensions):
     n = position.shape[1]
     owner = np.concatenate([below, np.arange(n), above])
     slab = Slab(0, 0.0, 1.0, len(below), n, len(above), periods, (0.0,) * dimensions, cutoff)
-    lists = list_by_levels(empty(0, 0), tuple(position[:, owner]), length[owner], SIZES, slab, 1)
+    lists = list_by_levels(
+        empty(0, 0), tuple(position[:, owner]), length[owner], np.ones(len(owner), np.bool_), SIZES, slab, 1
+    )
     for k, row in enumerate(all_pairs(position, length, periods)):
         begin, many = int(lists.begin[k]), int(lists.lengths[k])
         assert np.array_equal(np.sort(owner[lists.lists[begin : begin + many]]), row)

@@ -84,7 +84,7 @@ def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Co
 
     def by_levels():
         nonlocal room
-        room = levels.list_by_levels(room, rows, length, SIZES, slab, 1)
+        room = levels.list_by_levels(room, rows, length, np.ones(len(length), np.bool_), SIZES, slab, 1)
 
     by_levels()  # compiled, and with room
     entries = int(room.lengths[:n].sum())
