@@ -139,7 +139,7 @@ def test_deep_water_swings_on_a_slope_as_isaacson_says():
 @pytest.mark.timeout(1800)
 def test_waves_run_up_a_slope_as_eurotop_says(tmp_path):
     """Regular waves stand for those that 2 % of a sea exceed, 1.4 H_m0 high, whose run-up is R_u2%.  The control:
-    Hunt's R = ξH (1959) is of waves that break."""
+    Hunt's R = ξH (1959) is of waves that break.  Measured 2.20, by EurOtop 2.29."""
     period, gauges = 1.3, finished("coast/wave_run_up", tmp_path / "run").gauges()
     places = {"first": 1.2, "second": 1.5, "third": 1.9}
     height = 2.0 * incident(gauges, places, period, 0.3, 5.2)
