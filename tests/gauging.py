@@ -29,6 +29,6 @@ def readings(simulation, scene) -> dict[str, float]:
     """What every gauge reads, by column."""
     simulation.settle_pressure()
     found = {}
-    for gauge in gauges_of(scene, simulation.plan.mirrors).values():
+    for gauge in gauges_of(scene).values():
         found |= dict(zip(gauge.columns(scene), map(float, gauge.row(simulation)), strict=True))
     return found

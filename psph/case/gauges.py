@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Strict, model_validator
 from pydantic_core import PydanticCustomError
 
-from psph.acts import BODIES, MATTER, SOILS, SOLIDS, UPDATED, refusals
+from psph.acts import BODIES, FLOWING, IDEAL_GASES, MATTER, SOILS, SOLIDS, UPDATED, refusals
 from psph.case.errors import advise
 from psph.case.findings import Finding, keys_one_sided
 from psph.case.keys import AXES, Axis, Name, Place, Table, Vector, key
@@ -160,6 +160,8 @@ class Overtopping(OfFlow):
 
 class Point(Table):
     """Fields of the fluid at a point."""
+
+    acts: ClassVar = (*FLOWING, IDEAL_GASES)
 
     position: Vector = key("where", unit="m")
     fields: Annotated[tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)] = key(

@@ -237,9 +237,8 @@ def _beside(case) -> Iterator[Finding]:
     if case.physics.sound_speed is not None:
         says = "ideal gases have a speed of sound of their own, by pressure and density; remove this key"
         yield ("physics", "sound_speed"), case.physics.sound_speed, says
-    for table in ("regions", "probes"):
-        if getattr(case, table, None):
-            yield (table,), ..., f"nothing is known of {table} in ideal gases; remove the one or the other"
+    if getattr(case, "regions", None):
+        yield ("regions",), ..., "nothing is known of regions in ideal gases; remove the one or the other"
     for name, value in case.exact:
         if value is not None and not is_compressible(name):
             yield ("exact", name), ..., "is none of ideal gases; remove this table"

@@ -32,6 +32,8 @@ class Plane(NamedTuple):
 
     def then(self, time: float) -> "Plane":
         """The plane where it is at a ``time``, s, and as fast."""
+        if self.motion is None:
+            return self
         pose = self.motion.pose(time)
         way, velocity = pose.place((0.0, 0.0, 0.0)), tuple(map(float, pose.velocity))
         return self._replace(at=self.at + float(way[self.axis]), velocity=velocity[: len(self.velocity)])

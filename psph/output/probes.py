@@ -8,15 +8,15 @@ import numpy as np
 
 from psph.composition.mirrors import image, images
 from psph.composition.pair import take
-from psph.engine.jit import elementwise
+from psph.engine.jit import call_by_type, elementwise
 from psph.engine.settled import settled
-from psph.fields import FLUID, PRESSURE, SAVED, by_name, view_of
+from psph.fields import PRESSURE, SAVED, by_name, view_of
 from psph.output.flowing import ALL, counted
 from psph.parallel.reductions import Contribution, Total, totals
 from psph.particles.store import Store
 from psph.particles.wetting import WET
 from psph.physics.walls.dry import DryWall
-from psph.smoothing import weight
+from psph.smoothing import unit_kernel, weight
 from psph.vectors import at, dot, inside, nearest_image, subtract
 
 MEASURED = by_name(SAVED)
@@ -38,15 +38,15 @@ class FieldProbe:
     """Fields of the fluid at a point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968), or their mean over some.
 
     The sums are over the fluid and the walls that it wets, so that at a wall the mean is not that of
-    one side alone; beside ``mirrors`` (psph.composition.mirrors) over images too.  ``points`` (n, dim) m:
+    one side alone; beside mirrors (psph.composition.mirrors) over images too.  Where particles have sizes of
+    their own, each has the weight of its own smoothing length.  ``points`` (n, dim) m:
     of a sensor those of its area.  A point without fluid in reach bears no pressure: it counts as 0 Pa, and
     for nothing else.  ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry``
     those without fluid in reach of any point.
     """
 
-    def __init__(self, name: str, points: np.ndarray, fields: tuple[str, ...], mirrors=None):
+    def __init__(self, name: str, points: np.ndarray, fields: tuple[str, ...]):
         self.name, self.points, self.fields = name, np.atleast_2d(points), fields
-        self.mirrors = mirrors
         self.rows = self.dry = 0
         self._weigh = settled(weigh_near)
 
@@ -66,8 +66,8 @@ class FieldProbe:
     def ranges(self, simulation) -> Iterator[tuple[int, int]]:
         """For each point and image of it the first column, and that after the last, among which all stand
         that it sees."""
-        radius = _radius(simulation.plan.kernel)
-        return (simulation.neighbourhood.columns_near(place, radius) for _, place in self._places())
+        around = simulation.neighbourhood
+        return (around.columns_near(place, around.reach) for _, place in self._places(around.mirrors))
 
     def share(self, simulation) -> Contribution:
         """What this rank adds to the sums that :meth:`values` takes: for each point W V_j in the fluid,
@@ -77,14 +77,15 @@ class FieldProbe:
         the lists were made; the sums do not depend on how particles are spread.
         """
         rows = np.array([row for field in self.fields for row in simulation.store.rows[field]], np.int64)
-        seen = [self._seen(simulation, place, m, rows) for m, place in self._places()]
+        mirrors = simulation.neighbourhood.mirrors
+        seen = [self._seen(simulation, place, m, rows) for m, place in self._places(mirrors)]
         if len(seen) == 1:
             return Contribution(seen[0])
         terms = np.zeros((sum(map(len, seen)), len(self.points) * (2 + len(rows))))
         last = 0
         for k, near in enumerate(seen):
             first, last = last, last + len(near)
-            place = k // images(self.mirrors) * (2 + len(rows))
+            place = k // images(mirrors) * (2 + len(rows))
             terms[first:last, place : place + 2 + len(rows)] = near
         return Contribution(terms)
 
@@ -102,27 +103,28 @@ class FieldProbe:
         with np.errstate(invalid="ignore"):
             return (sums[wet, 2:] / sums[wet, 1:2]).sum(axis=0) / counted  # 0/0 where all is dry
 
-    def _places(self) -> Iterator[tuple[int, tuple[float, ...]]]:
-        """Of each point the place of every image m, and of itself as m = 0, m."""
+    def _places(self, mirrors) -> Iterator[tuple[int, tuple[float, ...]]]:
+        """Of each point the place of every image m in ``mirrors``, and of itself as m = 0, m."""
         # An image is as far from the point as the particle from the image of the point.
         for point in self.points:
             yield 0, tuple(map(float, point))
-            for m in range(1, images(self.mirrors)):
-                yield m, self.mirrors.reflections[m].seen(point)
+            for m in range(1, images(mirrors)):
+                yield m, mirrors.reflections[m].seen(point)
 
     def _seen(self, simulation, place: tuple[float, ...], m: int, rows: np.ndarray) -> np.ndarray:
         """The :meth:`terms` of one point, of this rank's particles in reach of it or of its image m at
         ``place``."""
-        store, periods, kernel = simulation.store, simulation.domain.periods, simulation.plan.kernel
-        first, last = simulation.neighbourhood.columns_near(place, _radius(kernel))
-        around = Nearby(place, _radius(kernel) ** 2, kernel, simulation.domain.lower, periods)
+        store, periods, reach = simulation.store, simulation.domain.periods, simulation.neighbourhood.reach
+        first, last = simulation.neighbourhood.columns_near(place, reach)
+        weighs, view = _weighing(simulation.plan, store)
+        around = Nearby(place, reach**2, weighs, simulation.domain.lower, periods)
         near, terms = np.empty(last - first, np.int64), np.empty((last - first, 2 + len(rows)))
         [wet] = store.rows[WET_MARK] if WET_MARK in store else [NONE]
-        groups = store.group, store.kinds == FLUID
-        count = self._weigh(first, last, around, _weighed(store), *groups, store.data, wet, rows, near, terms)
+        groups = store.group, counted(store.kinds, ALL)
+        count = self._weigh(first, last, around, view, *groups, store.data, wet, rows, near, terms)
         near, terms = near[:count], terms[:count]
         if m:
-            values = values_behind(self.mirrors.reflections[m], store, near, self.fields)
+            values = values_behind(simulation.neighbourhood.mirrors.reflections[m], store, near, self.fields)
             terms[:, 2:] = terms[:, 1:2] * np.column_stack(list(values))
         return terms
 
@@ -171,16 +173,12 @@ class Front:
         return np.where(np.isfinite(total.tops), total.tops, np.nan)
 
 
-def _radius(kernel) -> float:
-    """How far a point sees, m."""
-    return kernel.support / kernel.inverse_h
-
-
 def values_behind(reflection, store, near: np.ndarray, fields: tuple[str, ...]) -> Iterator[np.ndarray]:
     """Each component of some ``fields`` of the images of the columns ``near`` in a reflection."""
 
     def at_near(name: str):
-        value = store[name] if name in store else store.constants[name]
+        # A gas has no rest, and its images bear no weight: any number will do.
+        value = store[name] if name in store else store.constants.get(name, 1.0)
         return at(value, near) if isinstance(value, tuple) else value[near] if np.ndim(value) else value
 
     shown = tuple(dict.fromkeys(("position", *fields)))
@@ -195,9 +193,38 @@ WEIGHED = ("position", "mass", "specific_volume")
 """What the weight of a particle at a point is made of."""
 
 
-def _weighed(store: Store):
-    """The particles with no more than that: so scenes of other effects share the loop."""
-    return view_of(WEIGHED)(*map(store.value, WEIGHED))
+class OfOneSize(NamedTuple):
+    """The weight of particles that have one smoothing length, by their ``kernel``."""
+
+    kernel: Any
+
+    def weight(self, r, j):
+        """W of a particle ``j`` that is ``r`` m away, 1/m^d."""
+        return weight(self.kernel, r)
+
+
+class OfOwnSizes(NamedTuple):
+    """That of particles that have each its own, by a ``kernel`` with h = 1 m."""
+
+    kernel: Any
+
+    def weight(self, r, j):
+        """W of a particle ``j`` that is ``r`` m away, 1/m^d."""
+        inverse = 1.0 / j.length
+        return weight(self.kernel, r * inverse) * inverse ** len(j.position)
+
+
+weigh = call_by_type("weight")
+
+
+def _weighing(plan, store: Store):
+    """What weighs particles by a ``plan``, and these with no more than that reads: so scenes of other effects
+    share the loop."""
+    values = [*map(store.value, WEIGHED)]
+    if plan.sizes is None:
+        return OfOneSize(plan.kernel), view_of(WEIGHED)(*values)
+    own = OfOwnSizes(unit_kernel(plan.kernel, store.dimensions))
+    return own, view_of((*WEIGHED, "length"))(*values, store.value(plan.sizes.length))
 
 
 class Nearby(NamedTuple):
@@ -206,7 +233,7 @@ class Nearby(NamedTuple):
 
     place: tuple[float, ...]
     radius2: float
-    kernel: Any
+    weighs: Any
     lower: tuple[float, ...]
     periods: tuple
 
@@ -225,7 +252,7 @@ def weigh_near(first, last, around, view, group, fluid, data, wet, rows, near, t
         x = nearest_image(subtract(around.place, there), around.periods)
         r2 = dot(x, x)
         if r2 < around.radius2 and (wet < 0 or data[wet, k] >= WET):
-            share = weight(around.kernel, math.sqrt(r2)) * j.mass * j.specific_volume
+            share = weigh(around.weighs, math.sqrt(r2), j) * j.mass * j.specific_volume
             terms[count, 0] = share if fluid[group[k]] else 0.0
             terms[count, 1] = share
             for m in range(len(rows)):

@@ -39,12 +39,12 @@ class Schedule:
         return True
 
 
-def probes_of(case, mirrors=None) -> list[FieldProbe | Front]:
+def probes_of(case) -> list[FieldProbe | Front]:
     """The probes that a case asks for, beside ``mirrors`` (psph.composition.mirrors)."""
     return [
         Front(name, AXES.index(p.front))
         if p.front
-        else FieldProbe(name, _points(p, case.space), tuple(p.fields), mirrors)
+        else FieldProbe(name, _points(p, case.space), tuple(p.fields))
         for name, p in case.probes.items()
     ]
 
@@ -99,7 +99,7 @@ class Record:
         kept = saved and saved.header["record"]
         sizes = kept["sizes"] if kept else {}
         self.written = 0
-        self.probes = probes_of(case, simulation.plan.mirrors)
+        self.probes = probes_of(case)
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
         self._looked_at: tuple[int, list[tuple[int, int]]] | None = None
         self.probe_table = None
@@ -135,7 +135,7 @@ class Record:
             self.write_log: lambda sim: [diagnostics.logged(sim.store, self.heights, sim.engine.potential())],
         }
         further = {f"{name}.csv": table for name, table in scene.tables.items()}
-        further |= gauges_of(scene, simulation.plan.mirrors)
+        further |= gauges_of(scene)
         self.further = [
             (table, CsvTable(folder / file, ["time", *table.columns(scene)], comm, sizes.get(file)))
             for file, table in further.items()

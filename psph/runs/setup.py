@@ -170,7 +170,7 @@ def _rehearse(scene, plan: Plan, store: Store) -> None:
     rehearsal.settle_pressure()
     for probe in probes_of(scene.case):
         probe.sample(rehearsal)
-    for gauge in gauges_of(scene, plan.mirrors).values():
+    for gauge in gauges_of(scene).values():
         gauge.row(rehearsal)
     checksum(store.id, 0)  # a run that is told to end may have a second for its checkpoint
 

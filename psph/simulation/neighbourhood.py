@@ -92,7 +92,7 @@ class Neighbourhood:
         """Those that move stand where they are at a ``time``, s; raises TooLarge where two come too near."""
         if not any(plane.motion for plane in self.plan.planes):
             return
-        self.planes = tuple(plane.then(time) if plane.motion else plane for plane in self.plan.planes)
+        self.planes = tuple(plane.then(time) for plane in self.plan.planes)
         check_apart(self.planes, self.domain.cutoff)
         self.mirrors = moved(self.plan.mirrors, self.planes)
         self._mirrors = self._mirrors._replace(reflections=self.mirrors.reflections)
@@ -117,6 +117,12 @@ class Neighbourhood:
     def of(self, one: Pass) -> tuple[Neighbours, object]:
         """The lists that a pass goes through, and the mirrors in which it looks at them once more."""
         return (self._apart, None) if one.across else (self._lists, self._mirrors)
+
+    @property
+    def reach(self) -> float:
+        """How far a point sees particles, m, at the most."""
+        kernel = self.plan.kernel
+        return kernel.support / kernel.inverse_h if self.plan.sizes is None else self.domain.cutoff
 
     def columns_near(self, point, radius: float) -> tuple[int, int]:
         """The first owned column, and that after the last, between which all stand that are now within

@@ -35,6 +35,8 @@ PISTON = (
 condition = "mirror"
 shape.box = { lower = [-0.1, -0.1], upper = [0.0, 1.1] }
 motion = { sinusoid = { amplitude = [0.2, 0.0], frequency = 8.0 } }
+[probes.face]
+position = [0.1, 0.5]
 """
 )
 """The same before a piston that shakes."""

@@ -234,7 +234,6 @@ def test_what_gases_do_not_know_is_refused_in_a_line(tmp_path):
         ('space.kernel="hyperbolic"',): "space.kernel",
         ("space.smoothing=0.8",): "space.smoothing: 0.8: too few neighbours; give 1.1 or more",
         ("physics.sound_speed=10.0",): "physics.sound_speed.*of their own",
-        ("probes.p.position=[0.5, 0.5]",): "probes: nothing is known of probes in ideal gases",
         ("exact.elliptic_drop.strain=1.0",): "exact.elliptic_drop",
     }.items():
         with pytest.raises(CaseError, match=says):

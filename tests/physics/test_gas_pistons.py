@@ -7,6 +7,7 @@ from gauging import start
 from physics.test_gas import of
 
 from psph.case import CaseError
+from psph.output.probes import FieldProbe
 from psph.particles.sizes import TooLarge
 from psph.scene import Scene
 
@@ -86,6 +87,8 @@ def test_a_piston_drives_the_shock_of_its_speed(tmp_path):
     assert density[behind].mean() == pytest.approx(rho, rel=0.015)
     assert pressure[behind].mean() == pytest.approx(p, rel=0.01)
     assert x[density > 0.5 * (1.0 + rho)].max() == pytest.approx(0.4 * pace, abs=0.01)
+    face = FieldProbe("", np.array([0.4]), ("pressure", "velocity"))
+    assert face.sample(simulation) == pytest.approx([p, 1.0], rel=0.01)  # images and gas meet there
     before = energy(simulation)
     while simulation.time < 0.6:
         simulation.step(0.6)

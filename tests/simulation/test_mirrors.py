@@ -138,7 +138,7 @@ def test_water_rests_in_a_tank_of_mirrors(tmp_path):
     simulation = simulated(draft(tmp_path, TANK), 100)
     assert simulation.store.owned == 200 and simulation.fluid_speed < 2e-3
     simulation.settle_pressure()
-    probe = FieldProbe("corner", np.zeros(2), ("pressure", "velocity", "density"), simulation.plan.mirrors)
+    probe = FieldProbe("corner", np.zeros(2), ("pressure", "velocity", "density"))
     pressure, *velocity, density = probe.sample(simulation)
     c = simulation.plan.constants["sound_speed"]
     assert pressure == pytest.approx(4900.0, rel=0.01)

@@ -153,7 +153,7 @@ def test_a_bar_behind_a_mass_swings_along_as_theory_has_it(tmp_path):
 def test_the_reaction_of_the_clamp_is_what_the_hull_gets(tmp_path):
     """R = M(A − g) − m(A_r − g) with M of all that is rigid, m of the root of it, and A_r of the root's middle."""
     simulation, scene = started(draft(tmp_path, FIN, "physics.gravity=[0.0,-9.81]"), 20)
-    [gauge] = (one for one in gauges_of(scene, simulation.plan.mirrors).values() if one.name == "root")
+    [gauge] = (one for one in gauges_of(scene).values() if one.name == "root")
     bodies, root = simulation.engine.of("bodies").bodies, 1200.0 * 0.1 * 0.04
     place = simulation.engine.poses.maps[0, ACCELERATION]
     of_root = place[:, 0] + place[:, 1:] @ [0.15, 0.05]

@@ -62,7 +62,7 @@ def begun(case):
     simulation = Simulation(
         scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
     )
-    return simulation, gauges_of(scene, plan.mirrors)
+    return simulation, gauges_of(scene)
 
 
 def advanced(simulation, time):

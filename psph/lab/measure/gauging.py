@@ -89,7 +89,7 @@ class _Found:
     def __init__(self, scene, plan, asked: _Wanted, strict: bool):
         self.strict, self.refused = strict, list[str]()
         tables = scene.case.gauges
-        self.gauges = {name: gauge_of(scene, name, tables[name], plan.mirrors) for name in asked.names}
+        self.gauges = {name: gauge_of(scene, name, tables[name]) for name in asked.names}
         self._columns = {name: gauge.columns(scene) for name, gauge in self.gauges.items()}
         self._rows: dict[str, list[list[float]]] = {name: [] for name in self.gauges}
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from psph.composition.reflections import moved
 from psph.fields import CROSSED, OF_MATERIAL, REFERENCE, WALL
 from psph.lab.errors import MeasureError
 from psph.output.gauges.fit import nearest
@@ -176,6 +177,20 @@ class _Everywhere:
 
     def __init__(self, state: StoredState):
         self._state = state
+
+    @property
+    def reach(self) -> float:
+        """How far a point sees particles, m, at the most."""
+        plan, store = self._state.plan, self._state.store
+        if plan.sizes is None:
+            return plan.kernel.support / plan.kernel.inverse_h
+        return plan.sizes.support * float(store[plan.sizes.length][store.inner].max(initial=0.0))
+
+    @property
+    def mirrors(self):
+        """Where they stand."""
+        plan = self._state.plan
+        return plan.mirrors and moved(plan.mirrors, [one.then(self._state.time) for one in plan.planes])
 
     def columns_near(self, point, radius: float) -> tuple[int, int]:
         """The first column, and that after the last; refused where doubtful walls are within ``radius`` m."""

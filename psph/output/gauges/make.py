@@ -35,14 +35,12 @@ PER_SPACING = 4
 """Points of the line of a level in a spacing."""
 
 
-def gauges_of(scene, mirrors=None) -> dict[str, Any]:
+def gauges_of(scene) -> dict[str, Any]:
     """Each gauge of a scene by the file of its table; beside ``mirrors`` (psph.composition.mirrors)."""
-    return {
-        GAUGE.format(name): gauge_of(scene, name, table, mirrors) for name, table in scene.case.gauges.items()
-    }
+    return {GAUGE.format(name): gauge_of(scene, name, table) for name, table in scene.case.gauges.items()}
 
 
-def gauge_of(scene, name: str, table, mirrors=None):
+def gauge_of(scene, name: str, table):
     """The gauge of one table of ``[gauges]``: every, columns(scene) and row(simulation)."""
     asked, every = getattr(table, table.kind), table.every
     names = scene.layout.names
@@ -86,13 +84,13 @@ def gauge_of(scene, name: str, table, mirrors=None):
             plane, within = (axis, way, asked.at, asked.width), Within.of(scene, asked.shape)
             return OvertoppingGauge(name, every, *plane, within, _of(scene, asked))
         case "point":
-            probe = FieldProbe(name, asked.position, asked.fields, mirrors)
+            probe = FieldProbe(name, asked.position, asked.fields)
         case _:
             axis, beside = AXES.index(asked.axis), _beside(scene, asked)
             if face := face_of(scene, beside, asked, axis):
                 return SensorGauge(name, every, beside.groups, face, _carrier(asked, names))
             points = disc(asked.position, axis, asked.diameter, scene.spacing)
-            probe = FieldProbe(name, points, ("pressure",), mirrors)
+            probe = FieldProbe(name, points, ("pressure",))
     carrier = _carrier(asked, names)
     return CarriedPoints(probe, every, carrier, probe.points) if carrier else PointGauge(probe, every)
 
