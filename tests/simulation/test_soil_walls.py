@@ -219,11 +219,11 @@ def test_soil_rests_on_a_mirror_that_sticks_below_its_friction(tmp_path):
 
 @pytest.mark.parametrize(
     "images, bound",
-    ((reconstructed.WithStrengths, 0.02), pytest.param(reconstructed.Whole, None, marks=LONG)),
+    ((reconstructed.images_of, 0.02), pytest.param(lambda scene: reconstructed.Whole(), None, marks=LONG)),
 )
 def test_soil_slides_on_a_mirror_that_sticks_as_it_does_on_a_wall(images, bound, tmp_path, monkeypatch):
     """g (sin θ − sin φ cos θ), Davis (1968).  The control damps the jump at the plane, and gains a tenth less."""
-    monkeypatch.setattr(reconstructed, "WithStrengths", images)
+    monkeypatch.setattr(reconstructed, "images_of", images)
     angle = math.radians(35.0)
     pull = f"physics.gravity=[{9.81 * math.sin(angle)!r}, {-9.81 * math.cos(angle)!r}]"
     layer, _ = begun(draft(tmp_path, LAYER, pull))
