@@ -14,7 +14,7 @@ from psph.scene.shapes import bounds
 from psph.simulation.levels import CORNER, DIVIDED, LENGTH, Resizing
 from psph.work import Rank, Stage, Work
 
-SKIN = 0.32
+SKIN = 0.24
 """Part of the support by which lists reach farther at the least: how far each particle strays counts here,
 not how far two come nearer."""
 
