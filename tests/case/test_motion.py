@@ -254,7 +254,7 @@ def test_frames_that_cannot_be_are_refused(name, tmp_path):
 def test_a_mirror_stands_still_and_a_belt_has_no_motion_beside(tmp_path):
     for key, says in (
         ("velocity = [1.0, 0.0]", "of a wall that stands"),
-        ('condition = "mirror"', "a mirror stands"),
+        ('condition = "mirror"', "a mirror moves before gases alone"),
     ):
         [line] = refusal(tmp_path, f"{SCENE}\nmotion = {TURN} }}\n{key}")
         assert says in line
