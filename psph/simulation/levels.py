@@ -23,6 +23,10 @@ LENGTH, DIVIDED, CORNER = "own_length", "divided", "corner"
 """Names of the fields: the smoothing length of its level; 1 where finer ones stand in its place; which corner
 of a coarser particle's cell it is."""
 
+TIE = 1e-3
+"""Spacings about a border within which particles go on as they are: where a row stands on it, rounding would
+let the coarse ones change sides without their corners."""
+
 LASTS = 0.5
 """Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
 more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
@@ -91,7 +95,8 @@ class Resizing(Work):
             own = fluid & (level == one)
             away[own] = self.levels.outside(one, self.levels.middles(one, places[own], corner[own]))
             within[own] = self.levels.outside(one + 1, places[own])
-        follows = fluid & ((away >= 0.0) | (within < 0.0))
+        slack = np.where(self.follows[group], -TIE, TIE) * self.levels.layout.spacing
+        follows = fluid & ((away >= slack) | (within < -slack))
         turns = fluid & (follows != self.follows[group])
         self._count(GONE, level[turns & follows])
         self._count(COME, level[turns & ~follows])
