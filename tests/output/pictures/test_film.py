@@ -142,7 +142,7 @@ def test_a_film_that_is_ended_leaves_nothing(tmp_path, alone):
         frames.write(k, 0.0025 * k, k, arrays)
     command = [sys.executable, "-m", "psph", "plot", str(tmp_path), "--film"]
     with subprocess.Popen(command, env=clean_environment(), stdout=subprocess.PIPE) as filming:
-        begun, patience = None, time.monotonic() + 240.0
+        begun, patience = None, time.monotonic() + 60.0
         while begun is None and filming.poll() is None and time.monotonic() < patience:
             begun = next(tmp_path.glob(".pressure.*"), None)
             time.sleep(0.02)
