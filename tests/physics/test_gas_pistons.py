@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import tomli_w
 from drafts import draft, refusal
 from gauging import start
 from physics.test_gas import of
@@ -132,6 +133,52 @@ def test_a_piston_in_a_corner_of_mirrors_drives_the_same_shock(tmp_path):
     assert density[behind].mean() == pytest.approx(rho, rel=0.03)
     assert pressure[behind].mean() == pytest.approx(p, rel=0.02)
     assert np.abs(of(simulation, "velocity")[0][:, 0]).max() < 0.02
+
+
+def along(folder, axis, way):
+    """Place, velocity and pressure along ``axis``, in order, of gas that a piston has pressed ``way`` (1, −1) against
+    its weight."""
+
+    def box(first, last, wide=(0.0, 0.6)):
+        ends = [
+            list(ends)
+            for ends in zip(*(sorted((way * first, way * last)) if d == axis else wide for d in (0, 1)))
+        ]
+        return dict(zip(("lower", "upper"), ends))
+
+    def vector(size):
+        return [way * size if d == axis else 0.0 for d in (0, 1)]
+
+    gas, across = box(0.0, 1.0), (-0.2, 0.8)
+    tables = {
+        "scheme": "gas",
+        "space": {"dimensions": 2, "spacing": 0.05, "periodic": ["yx"[axis]], **gas},
+        "time": {"end": 1.0, "step": 0.002},
+        "physics": {"gravity": vector(-0.5)},
+        "ideal_gases": {"gas": {"shape": {"box": gas}, "density": 1.0, "pressure": 1.0}},
+        "walls": {
+            "end": {"shape": {"box": box(1.0, 1.2, across)}, "condition": "mirror"},
+            "piston": {
+                "shape": {"box": box(-0.2, 0.0, across)},
+                "condition": "mirror",
+                "motion": {"translation": {"velocity": vector(1.0)}},
+            },
+        },
+    }
+    simulation = start(draft(folder, tomli_w.dumps(tables)))
+    for _ in range(60):
+        simulation.step()
+    simulation.settle_pressure()
+    x, v, p = of(simulation, "position", "velocity", "pressure")
+    order = np.argsort(way * x[:, axis], kind="stable")
+    return np.array([way * x[order, axis], way * v[order, axis], p[order]])
+
+
+def test_a_piston_that_is_turned_or_mirrored_does_the_same(tmp_path):
+    first = along(tmp_path, 0, 1.0)
+    assert first[2].max() > 2.5
+    for axis, way in ((0, -1.0), (1, 1.0), (1, -1.0)):
+        assert np.abs(along(tmp_path, axis, way) - first).max() < 1e-12
 
 
 def test_pistons_that_meet_end_the_run(tmp_path):
