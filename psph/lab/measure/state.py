@@ -69,6 +69,8 @@ class StoredState:
         held = {name: rows for name, rows in frame.items() if name in s.rows}
         if REFERENCE.name in s.rows and REFERENCE.name not in held and self._from_the_start:
             held[REFERENCE.name] = self._starts(frame["id"])
+        if self.plan.sizes is not None and self.plan.sizes.length not in held:
+            held[self.plan.sizes.length] = self._lengths(self.plan.sizes.length, group, frame["position"])
         if not any(self.domain.periods):
             held[CROSSED.name] = np.zeros_like(frame["position"])
         if WET_MARK in s.rows and WET_MARK not in held:
@@ -85,6 +87,11 @@ class StoredState:
         s.data[list(s.rows["specific_volume"]), s.inner] = 1.0 / density
         self._place()
         self.store = HeldFields(s, {*held, *frame, *ALWAYS}, self.run)
+
+    def _lengths(self, name: str, group: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """Smoothing lengths, m (n, 1), that frames do not hold, since they follow from what a particle is."""
+        told = (kind.starts((name,), group, position) for kind in self.plan.matter)
+        return next(value for found in told for key, value in found if key == name)
 
     def _starts(self, ids: np.ndarray) -> np.ndarray:
         """Where particles were in the first frame, m (n, dim); zeros where they came later."""
