@@ -71,6 +71,15 @@ def test_what_can_be_trapped_is_told_the_speed_of_sound_that_it_needs(tmp_path):
         assert not any("trap" in x for x in check(Scene(draft(tmp_path, LAYERS, *keys))))
 
 
+@pytest.mark.parametrize(("top", "rows"), [("0.32", "1 row "), ("0.34", "2 rows "), ("0.36", "")])
+def test_a_layer_that_is_thinner_than_the_kernel_reaches_is_warned_of(tmp_path, top, rows):
+    lines = check(Scene(draft(tmp_path, LAYERS, f"fluids.oil.shape.box.upper=[0.5,{top}]")))
+    told = [x.partition("fluids.oil.shape: ")[2] for x in lines if "may part" in x]
+    assert len(told) == bool(rows) and all(x.startswith(f"{rows}of particles along y") for x in told)
+    alone = (f"fluids.oil.shape.box.upper=[0.5,{top}]", "fluids.oil.density=1000.0")
+    assert not any("may part" in x for x in check(Scene(draft(tmp_path, LAYERS, *alone))))
+
+
 @pytest.mark.parametrize(("density", "count"), [(100.0, 1), (800.0, 0)])
 def test_walls_without_pressure_beside_a_light_fluid_are_warned_of(tmp_path, density, count):
     keys = (f"fluids.oil.density={density}", "walls.floor.condition=penalty")

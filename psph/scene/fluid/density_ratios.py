@@ -3,9 +3,12 @@
 from collections.abc import Iterator
 from itertools import combinations
 
+from psph.case.keys import AXES
 from psph.physics.fluid.several import several
+from psph.scene.faces import thinnest
 from psph.scene.parts import Part
 from psph.scene.scene import Scene
+from psph.scene.walls import layers_needed
 
 LARGEST_RATIO = 5.0
 """Of the densities of two fluids in one scene.  A still layer of a fifth of the density on water keeps its
@@ -13,7 +16,6 @@ pressure within some per cent; at a tenth the pressure is 19 % off, at a twentie
 
 ALIKE = 0.01
 """Densities that differ by less than this part are one for a wall."""
-
 
 COMPRESSED = 0.3
 """Largest pressure over ρ₀c² that a trapped fluid bears: at 0.5 the guard of the density ends a run."""
@@ -28,6 +30,7 @@ def several_fluids(scene: Scene) -> Iterator[str]:
     if several(scene):
         yield from _trapped(scene, fluids)
         yield from _held_by_no_pressure(scene, fluids)
+        yield from _thin(scene, fluids)
         return
     for one, other in combinations(fluids, 2):
         own, beside = one.table.density, other.table.density
@@ -71,6 +74,19 @@ def _held_by_no_pressure(scene: Scene, fluids: list[Part]) -> Iterator[str]:
                 f'{part.key}.condition: "{condition}" bears no pressure, and errs by some per cent of that '
                 f"of {heavy.key}, more than {light.key} of {light.table.density:g} kg/m3 has; use "
                 '"dynamic"'
+            )
+
+
+def _thin(scene: Scene, fluids: list[Part]) -> Iterator[str]:
+    """Layers and drops that the kernel sees through: a row of a tenth of the density parts at once."""
+    need = layers_needed(scene.layout)
+    for part in fluids:
+        rows, axis = thinnest(scene.census, part.number)
+        if rows < need:
+            yield (
+                f"{part.key}.shape: {rows} row{'s' * (rows != 1)} of particles along {AXES[axis]}, and the "
+                f"kernel reaches over {need}: beside other densities it may part; make it at least "
+                f"{need * scene.spacing:.6g} m thick, or space.spacing smaller"
             )
 
 
