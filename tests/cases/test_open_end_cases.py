@@ -178,7 +178,7 @@ def test_a_stream_bends_an_elastic_bar(tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(900)
 def test_the_discharge_of_a_weir(tmp_path):
     """At 8 spacings a head: within 4 % of Hager & Schwalt's by the head upstream, which the water finds."""
     run = finished("ends/weir", tmp_path, "space.spacing=0.025")
@@ -316,3 +316,51 @@ def test_a_hydraulic_jump_stands_between_its_two_levels(tmp_path):
     assert abs(np.mean(fronts[-10:]) - np.mean(fronts[:10])) < 0.2
     assert depth == pytest.approx(0.474, rel=0.03) and momentum == pytest.approx(1.0, abs=0.02)
     assert jumped(tmp_path, "ends.downstream.waves=out")[1] < 0.95 * 0.474
+
+
+REACH = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 200.0
+physics.gravity = [0.0, -9.81]
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [6.0, 1.0] }
+shape.difference.minus = [{ box = { lower = [2.5, 0.0], upper = [3.5, 0.3] } }]
+pressure = "hydrostatic"
+velocity = [0.5, 0.0]
+[walls.bed]
+shape.union = [
+    { box = { lower = [-0.6, -0.4], upper = [6.6, 0.0] } }, { box = { lower = [2.5, 0.0], upper = [3.5, 0.3] } }
+]
+[ends.upstream]
+at = 0.0
+inward = "+x"
+flow = 0.5
+span.y = [0.0, 1.6]
+[ends.downstream]
+at = 6.0
+inward = "-x"
+level = 1.0
+span.y = [0.0, 1.6]
+"""
+
+
+@LONG
+@pytest.mark.timeout(1800)
+def test_a_reach_of_a_river_keeps_its_books_for_100_000_steps(tmp_path):
+    """Nine times its water passes over a sill: what is inside is what came in less what went out, in particles and
+    in mass to 1e-13; its level, its density and its speed stay."""
+    simulation = start(draft(tmp_path, REACH))
+    number, mass = (f(of_fluid(simulation, "mass")) for f in (len, np.sum))
+    while simulation.steps < 100_000:
+        simulation.step()
+        if simulation.steps % 500 == 0:
+            up, down = (state.books for state in simulation.engine.of("ends").states)
+            inside = of_fluid(simulation, "mass")
+            net = up.number_in - up.number_out + down.number_in - down.number_out
+            assert len(inside) == number + net
+            came = up.mass_in - up.mass_out + down.mass_in - down.mass_out
+            assert inside.sum() == pytest.approx(mass + came, rel=1e-13)
+            assert abs(of_fluid(simulation, "density") / 1000.0 - 1.0).max() < 0.01
+            assert abs(len(inside) - number) < 0.06 * number
+            assert abs(of_fluid(simulation, "velocity")).max() < 1.2
+    assert up.number_in * 0.01 == pytest.approx(0.5 * simulation.time, rel=0.01)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from drafts import draft
 from gauging import start
+from long import LONG
 
 from psph.physics.damping import matter
 from psph.physics.fluid import continuity, correction, pressure, summation
@@ -64,6 +65,16 @@ def test_layers_rest(tmp_path, ratio, more):
     density = f"fluids.light.density={1000.0 / ratio}"
     slow, off, slope, moved = settled(start(draft(tmp_path, LAYERS, density, *more)), 600)
     assert slow < 2e-3 and off < 0.005 and slope == pytest.approx(1.0, abs=0.01) and abs(moved) < 0.1
+
+
+@LONG
+@pytest.mark.parametrize("ratio", [10.0, 1000.0])
+def test_layers_rest_for_ten_seconds(tmp_path, ratio):
+    """At the default step: 0.4 % of ρgH off at ten rows, and less than 1e-4 m/s."""
+    simulation = start(draft(tmp_path, LAYERS, f"fluids.light.density={1000.0 / ratio}", "time.end=20.0"))
+    slow, off, slope, moved = settled(simulation, 13_500)
+    assert simulation.time > 9.9
+    assert slow < 1e-3 and off < 0.005 and slope == pytest.approx(1.0, abs=0.01) and abs(moved) < 0.1
 
 
 JITTER = ("fluids.water.jitter=0.2", "fluids.light.jitter=0.2")
