@@ -29,6 +29,10 @@ class PeersError(Refused):
         super().__init__(one_line(message))
 
 
+class RunBlewUp(PeersError):
+    """A run of a benchmark whose flow blew up: that is what its row says."""
+
+
 class StudyError(Refused):
     """A study that cannot be made or read."""
 

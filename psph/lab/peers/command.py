@@ -11,11 +11,12 @@ from pathlib import Path
 
 from psph.errors import Foreseen
 from psph.lab.bench.measure import machine
-from psph.lab.errors import PeersError
+from psph.lab.errors import PeersError, RunBlewUp
 from psph.lab.peers.benchmarks import BENCHMARKS, PACE, PACE_HEAD
 from psph.lab.peers.environment import Environment
+from psph.lab.peers.front import draw
 from psph.lab.peers.lammps import LAMMPS
-from psph.lab.peers.own import Own
+from psph.lab.peers.own import Earlier, Own
 from psph.lab.peers.page import Cells, part, put
 from psph.lab.peers.pysph import PySPH
 from psph.lab.peers.records import Code, Outcome
@@ -23,6 +24,9 @@ from psph.lab.peers.sphinxsys import SPHinXsys
 from psph.output.pages import renew
 
 PAGE, FOLDER = Path("docs/peers.md"), Path("build/peers")
+
+PICTURE = Path("images/peers.png")
+"""Beside the page."""
 
 MACHINE = "machine"
 """The markers around the line that says where the last runs were."""
@@ -43,6 +47,7 @@ def options() -> argparse.ArgumentParser:
         "--folder", type=Path, default=FOLDER, help=f"for environments, runs (default: {FOLDER})"
     )
     made.add_argument("--sphinxsys", type=Path, help="a folder with the sources of SPHinXsys, to be built")
+    made.add_argument("--before", type=Path, help="a checkout of older sources of psph, to run beside")
     made.add_argument("--alone", action="store_true", help="psph alone: other codes keep their rows")
     made.add_argument("--page", type=Path, default=PAGE, help=f"the page (default: {PAGE})")
     return made
@@ -70,7 +75,7 @@ def in_turns(
 ) -> dict[str, Cells]:
     """The rows of a benchmark: each code runs once in each turn, one after the other."""
     judged, seconds, versions = {}, {}, {}
-    failed = set()
+    failed, blown = set(), {}
     for turn in range(turns):
         for code, version in codes.values():
             for job in code.jobs(benchmark):
@@ -78,6 +83,11 @@ def in_turns(
                     continue
                 try:
                     outcome = job.run(fresh(folder / f"{benchmark}-{job.label}-{turn}"))
+                except RunBlewUp as error:
+                    print(error, flush=True)
+                    blown[job.label] = (*BENCHMARKS[benchmark].blown, f"{version}, {day}")
+                    failed.add(job.label)
+                    continue
                 except PeersError as error:
                     print(f"{error}; its row is kept", flush=True)
                     failed.add(job.label)
@@ -89,7 +99,7 @@ def in_turns(
                     f"{benchmark}, {job.label}: {', '.join(judged[job.label])}; {spent(seconds[job.label])}",
                     flush=True,
                 )
-    return {
+    return blown | {
         label: (*cells, *costs(seconds[label]), f"{versions[label]}, {day}")
         for label, cells in judged.items()
         if label not in failed
@@ -148,7 +158,8 @@ def compare(asked: argparse.Namespace) -> None:
     for name in (*benchmarks, MACHINE):
         part(asked.page, name)  # before anything is run
     environment = Environment(folder / "environment")
-    others: list = [] if asked.alone else [PySPH(environment)]
+    others: list = [Earlier(asked.before)] if asked.before else []
+    others += [] if asked.alone else [PySPH(environment)]
     if asked.sphinxsys:
         others.append(SPHinXsys(asked.sphinxsys, folder / "sphinxsys"))
     elif not asked.alone:
@@ -164,7 +175,8 @@ def compare(asked: argparse.Namespace) -> None:
         elif not asked.alone:
             pace(LAMMPS(environment), asked.page, folder / RUNS, day)
     renew(asked.page, where, MACHINE)
-    print(f"{asked.page} holds what was measured.")
+    picture = draw(asked.page, asked.page.parent / PICTURE)
+    print(f"{asked.page} holds what was measured, {picture} shows it.")
 
 
 def pace(lammps: LAMMPS, page: Path, folder: Path, day: str) -> None:

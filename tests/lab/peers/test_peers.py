@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from psph.case import load
 from psph.lab.errors import PeersError
-from psph.lab.peers import cavity, command, judge, own, pysph, pysph_side, sphinxsys
+from psph.lab.peers import cavity, command, judge, own, own_runs, pysph, pysph_side, sphinxsys
 from psph.lab.peers.benchmarks import BENCHMARKS, PACE, PACE_HEAD
 from psph.lab.peers.environment import PYSPH, Environment
 from psph.lab.peers.page import part, put, rows_of, table
@@ -258,8 +259,8 @@ def test_a_folder_without_its_sources_or_with_others_is_refused_in_one_line(tmp_
 
 @pytest.mark.parametrize("benchmark", BENCHMARKS)
 def test_every_case_of_psph_is_a_good_one(benchmark):
-    for case, keys in own.RUNS[benchmark].values():
-        assert own.load(own.CASES / case, keys).time.end >= 1.0
+    for case, keys in own_runs.RUNS[benchmark].values():
+        assert load(own.CASES / case, keys).time.end >= 1.0
 
 
 # The page
@@ -382,7 +383,7 @@ def test_a_tiny_run_of_pysph(tmp_path):
 
 def test_a_run_of_psph_says_its_seconds(tmp_path):
     keys = ("time.end=0.02", "output.frames=0.02", "physics.sound_speed=10", "space.spacing=0.04")
-    found = own.run(own.CASES / "taylor_green.toml", keys, tmp_path)
+    found = own.run(own.HERE, own.CASES / "taylor_green.toml", keys, tmp_path)
     [state] = found.states
     assert len(state.position) == 625 and 0.0 < found.run < found.whole
     assert float(judge.taylor_green(found)[0]) < 3.0
