@@ -179,7 +179,7 @@ def test_steps_of_two_passes_are_stable_at_their_limit_and_not_beyond(tmp_path, 
 
 
 def test_frictions_that_meet_in_disorder_are_stable_at_their_limit_together_and_not_each_at_its_own(tmp_path):
-    """Viscosity and the damping of disorder, in steps of two passes, among particles that lie 0.3 spacings off."""
+    """Viscosity and damping, in steps of two passes, among particles that lie 0.3 spacings off."""
     tables = lattice(scheme="stable", viscosity=BESIDE, passes=2, jitter=0.3)
     cfl = {**tables, "time": {**tables["time"], "cfl": 0.5}}
     limits = {name: step for step, name in begun(cfl, tmp_path).plan.step_limits(0.0, 0.0)}

@@ -16,6 +16,7 @@ from psph.physics.damping.reconstructed import (
     BesideLinearFlow,
     DampingToEdges,
     EndingAtOthers,
+    ReconstructedDamping,
     Whole,
     WithStrengths,
     images_of,
@@ -261,6 +262,42 @@ def test_damping_is_stronger_in_disorder(dim):
         pair = pair_of(p._replace(gradient_correction=rough), 0, 1)
         found = BesideLinearFlow(0.1, 0.0, 0.2).radial(*pair)
         assert found == pytest.approx(PairDamping(alpha).radial(*pair), rel=1e-12)
+
+
+FILLED = """
+[space]
+dimensions = 2
+spacing = 0.1
+lower = [0.0, 0.0]
+upper = [2.0, 2.0]
+periodic = ["x", "y"]
+
+[time]
+end = 1.0
+
+[physics]
+sound_speed = 10.0
+
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
+density = 1000.0
+
+[fluids.oil]
+shape.box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }
+density = 800.0
+"""
+
+
+def test_damping_grows_in_disorder_only_where_a_fluid_can_come_apart(tmp_path):
+    """A box that one fluid fills; controls: the same with two fluids, and with room above."""
+
+    def more(*keys, of=FILLED):
+        scene = Scene(draft(tmp_path, of, *keys))
+        return ReconstructedDamping(0.03, 0.2).in_scene(scene).more
+
+    assert more("fluids.oil.density=1000.0") == 0.0
+    assert more() == pytest.approx(0.17)
+    assert more(of=FILLED.partition("[fluids.oil]")[0]) == pytest.approx(0.17)
 
 
 def potential(dim):

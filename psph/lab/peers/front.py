@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from psph.lab.peers.benchmarks import BENCHMARKS, Benchmark, numbers
 from psph.lab.peers.page import Cells, part, rows_of
@@ -89,6 +89,7 @@ def _panel(axes: Axes, title: str, curves: Mapping[str, list[Point]], colours: M
             axes.annotate(said, (point.seconds, point.error), **place)
     axes.margins(0.25, 0.15)
     for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(lambda number, _: f"{number:g}")
         axis.set_minor_formatter(NullFormatter())
     axes.grid(color=style.WALLS, lw=0.4)

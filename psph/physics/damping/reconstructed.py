@@ -12,6 +12,7 @@ from psph.formula import helper, where
 from psph.physics.damping.matter import FluidsUnderTension, Matter, OneMatter, SeveralFluids, alike, matter_of
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
+from psph.physics.fluid.several import several
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
 from psph.physics.fluid.viscosity import braking_step, inverse_square, lighter, slower
 from psph.vectors import add, dot, scale, subtract, times, zero_like
@@ -147,9 +148,9 @@ class ReconstructedDamping(NamedTuple):
     a linear flow up to a free surface and a wall.  Frontiere, Raskin & Owen (2017), J. Comput. Phys. 332,
     160, for a viscosity on approach.  In disorder and at a surface, as :class:`LocalPotential
     <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to ``in_disorder`` where that
-    is larger: psph's own.  A wall damps what approaches it along its normal at more than 0.02 c, the excess
-    alone, and nothing else; so does a fluid of another density, at 0.1 c.  It conserves momentum and angular
-    momentum.
+    is larger, in scenes with a free surface or several fluids: psph's own.  A wall damps what approaches it
+    along its normal at more than 0.02 c, the excess alone, and nothing else; so does a fluid of another
+    density, at 0.1 c.  It conserves momentum and angular momentum.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -163,8 +164,9 @@ class ReconstructedDamping(NamedTuple):
     ] = 0.0
 
     def in_scene(self, scene: Facts):
-        """The form that knows the spacing."""
-        more = max(self.in_disorder - self.alpha, 0.0)
+        """The form that knows the spacing; α rises only where a fluid can come apart."""
+        loose = scene.has_free_surface or several(scene)
+        more = max(self.in_disorder - self.alpha, 0.0) if loose else 0.0
         images = images_of(scene)
         ends = isinstance(images, WithStrengths | EndingAtOthers) or not _all_flows(scene)
         form = DampingToEdges if ends else BesideLinearFlow
