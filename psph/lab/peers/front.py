@@ -23,7 +23,7 @@ SIZE = re.compile(r", (\d+²|dx [\d.]+)$")
 """The end of a label that says how fine a run is: those that differ by it alone are joined."""
 
 
-class Point(NamedTuple):
+class Dot(NamedTuple):
     """A run: CPU ``seconds``, its ``error`` in %, and how fine it is in words."""
 
     seconds: float
@@ -31,15 +31,15 @@ class Point(NamedTuple):
     size: str
 
 
-def curves_of(benchmark: Benchmark, rows: Mapping[str, Cells]) -> dict[str, list[Point]]:
+def curves_of(benchmark: Benchmark, rows: Mapping[str, Cells]) -> dict[str, list[Dot]]:
     """The runs of a table by what they are of, from the cheapest on; rows without an error are left out."""
-    found: dict[str, list[Point]] = {}
+    found: dict[str, list[Dot]] = {}
     for label, cells in rows.items():
         seconds = [number for cell in cells[-3:-1] for number in numbers(cell)[:1]]
         error = benchmark.error(cells)
         if seconds and error:  # a logarithm shows no 0
             size = SIZE.search(label)
-            point = Point(seconds[0], error, size[1] if size else "")
+            point = Dot(seconds[0], error, size[1] if size else "")
             found.setdefault(SIZE.sub("", label), []).append(point)
     return {name: sorted(points) for name, points in found.items()}
 
@@ -77,7 +77,7 @@ def kind(name: str) -> tuple[str, str]:
     return (f"{code}, as set up for it", "") if scheme.startswith("`") else (f"{code}, {scheme}", more)
 
 
-def _panel(axes: Axes, title: str, curves: Mapping[str, list[Point]], colours: Mapping[str, str]) -> None:
+def _panel(axes: Axes, title: str, curves: Mapping[str, list[Dot]], colours: Mapping[str, str]) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     for name, points in curves.items():

@@ -8,7 +8,7 @@ import pytest
 from psph.lab.errors import PeersError, RunBlewUp
 from psph.lab.peers import command, own
 from psph.lab.peers.benchmarks import BENCHMARKS, numbers
-from psph.lab.peers.front import Point, curves_of, draw, kind
+from psph.lab.peers.front import Dot, curves_of, draw, kind
 from psph.lab.peers.page import table
 from psph.lab.peers.records import Job
 
@@ -26,9 +26,9 @@ VORTICES = {
 def test_runs_of_one_kind_are_joined_from_the_cheapest_on():
     """What blew up has no point; a run whose own seconds are unknown has those of the whole."""
     assert curves_of(BENCHMARKS["taylor_green"], VORTICES) == {
-        "psph, default scheme": [Point(0.7, 1.3, "25²"), Point(2.2, 0.49, "50²")],
-        "PySPH `tvf`, jittered": [Point(31.0, 9.0, "")],
-        "SPHinXsys": [Point(1.3, 62.0, "")],
+        "psph, default scheme": [Dot(0.7, 1.3, "25²"), Dot(2.2, 0.49, "50²")],
+        "PySPH `tvf`, jittered": [Dot(31.0, 9.0, "")],
+        "SPHinXsys": [Dot(1.3, 62.0, "")],
     }
 
 
