@@ -2,7 +2,6 @@
 
 import gc
 import os
-import signal
 import sys
 import time
 import traceback
@@ -132,6 +131,7 @@ def _completion(options, comm) -> None:
 
 def _plot(options, comm) -> None:
     from psph.lab.study.beside import beside
+    from psph.output.pictures.ending import end_when_told
     from psph.output.pictures.flat import slice_of
     from psph.output.pictures.plot import film, plot
 
@@ -145,7 +145,7 @@ def _plot(options, comm) -> None:
     cut = slice_of(options.cut) if options.cut else None
     shown = (options.times, options.field, cut, options.surface, options.column)
     if options.film is not None:
-        signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # what is half made goes
+        end_when_told()
         print(film(options.folder, options.film if options.film.name else None, *shown))
         return
     measured = beside(options.folder)

@@ -149,3 +149,40 @@ def test_a_film_that_is_ended_leaves_nothing(tmp_path, alone):
         filming.terminate()
     assert begun is not None and filming.returncode == 128 + signal.SIGTERM
     assert not [path.name for path in tmp_path.iterdir() if "pressure" in path.name]
+
+
+LOST = """
+import os, signal, sys, weakref
+from psph.output.pictures.ending import end_when_told
+class Thing: pass
+def dropped(_):
+    os.kill(os.getpid(), signal.SIGTERM)
+    for _ in range(10**5): pass
+{start}
+thing = Thing()
+watched = weakref.ref(thing, dropped)
+try:
+    del thing
+    import time
+    time.sleep(1.0)
+finally:
+    print("cleaned", flush=True)
+"""
+
+
+@pytest.mark.parametrize(
+    "start, code",
+    [
+        ("end_when_told()", 128 + signal.SIGTERM),
+        ("signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))", 0),
+    ],
+)
+def test_an_end_that_python_drops_is_tried_again(start, code):
+    """Told within the callback of a weak reference; control: the bare handler, whose exit is lost."""
+    done = subprocess.run(
+        [sys.executable, "-c", LOST.format(start=start)],
+        env=clean_environment(),
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == code and done.stdout == "cleaned\n"
