@@ -120,7 +120,6 @@ def _face(scene, names: list[str], name: str) -> EndFace:
     half = 0.5 * layout.spacing
     wet_low = scene.census.lowest[held].min(axis=0) - half if held else lower
     wet_high = scene.census.highest[held].max(axis=0) + half if held else upper
-    across = [d for d in range(layout.dimensions) if d != end.axis]
     column, _ = column_of(scene, end, groups, lower, upper)
     height, layers = _height(scene, end, wet_low, wet_high), rows_of(scene.case, end)
     if height:
@@ -144,7 +143,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         level=_by_time(end.level),
         feeding=names.index(end.pump) if end.pump else None,
         shaped=end.profile != "uniform",
-        shape=_shape(end, across, wet_low[across], wet_high[across]),
+        shape=_shape(layout, end, wet_low, wet_high),
         settle=_settle(scene, end, height) if end.lets_waves_out and not unlike(scene) else None,
         follows=SLOW * _settle(scene, end, height),
         height=height,
@@ -192,18 +191,36 @@ def _height(scene, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> float:
     return float(high[axis] - low[axis]) if open_above else 0.0
 
 
-def _shape(end: OpenEnd, across: list[int], low: np.ndarray, high: np.ndarray) -> Callable:
-    """The speed of what comes in over its mean, of places (n, dim), m."""
+def _shape(layout: Layout, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> Callable:
+    """The speed of what comes in over its mean, of places (n, dim), m; ``low`` and ``high`` are its sides."""
     told = end.profile
     if isinstance(told, AcrossFace):
         axis = AXES.index(told.along)
-        ends = low[across.index(axis)], high[across.index(axis)]
-        mean = mean_of(told, *ends)
+        mean = mean_of(told, low[axis], high[axis])
         return lambda x: told.at(x[:, axis]) / mean
-    by_name = {"parabola": parabola, "pipe": pipe}
-    if told not in by_name or not across:
+    low, high = _whole(layout, low, high)
+    across = [d for d in range(layout.dimensions) if d != end.axis and low[d] > -math.inf]
+    if told == "uniform" or not across:
         return lambda x: np.ones(len(x))
-    return lambda x: by_name[told](x[:, across], low, high)
+    form = pipe if told == "pipe" and len(across) > 1 else parabola
+    return lambda x: form(x[:, across], low[across], high[across])
+
+
+def _whole(layout: Layout, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The sides of a face with its images behind planes of symmetry, m; -inf and inf where it has none."""
+    least, most = low.copy(), high.copy()
+    for d, period in enumerate(layout.periods):
+        size = high[d] - low[d]
+        begins, ends = (f"{AXES[d]}.{side}" in layout.case.space.symmetry for side in ("lower", "upper"))
+        begins &= abs(low[d] - layout.lower[d]) < 0.5 * layout.spacing
+        ends &= abs(high[d] - layout.upper[d]) < 0.5 * layout.spacing
+        if (begins and ends) or (period is not None and size > period - 0.5 * layout.spacing):
+            least[d], most[d] = -math.inf, math.inf
+        elif begins:
+            least[d] -= size
+        elif ends:
+            most[d] += size
+    return least, most
 
 
 def mean_of(profile: AcrossFace, low: float, high: float) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from invariances.running import State, after, begun
 from invariances.scenes import DX, SCENES
+from invariances.streams import STREAMS
 from invariances.transforms import Extruded
 from long import long_but_for
 from scipy.spatial import cKDTree
@@ -26,6 +27,8 @@ KINDS = (
     "updated",
     "layers under tension",
     "water that sticks",
+    "open plates",
+    "open flow",
 )
 """Scenes without their disorder: noise is another in 3D."""
 
@@ -49,7 +52,7 @@ by the determinant that 2D does."""
 
 def in_order(name, folder):
     """A scene on its lattice, with a step that both dimensions bear."""
-    tables = copy.deepcopy(SCENES[name])
+    tables = copy.deepcopy({**SCENES, **STREAMS}[name])
     tables.pop("perturbations", None)
     simulation = begun(tables, folder)
     step, _ = simulation.plan.longest_step(simulation.speed, simulation.acceleration)

@@ -222,6 +222,40 @@ def test_ends_that_overlap_are_moved(tmp_path):
     assert any("ends.outlet: overlaps ends.inlet at" in line for line in refused.value.lines)
 
 
+DUCT = """
+space = {{ dimensions = 3, spacing = 0.1, lower = [-0.5, -0.4, 0.0], upper = [1.5, 1.4, 1.0], {} }}
+time.end = 1.0
+physics.sound_speed = 15.0
+[fluids.oil]
+shape.box = {{ lower = [0.0, 0.0, 0.0], upper = [1.0, 1.0, 1.0] }}
+[walls.plates]
+shape.difference.from.box = {{ lower = [-0.5, -0.4, 0.0], upper = [1.5, 1.4, 1.0] }}
+shape.difference.minus = [{{ box = {{ lower = [-0.5, 0.0, 0.0], upper = [1.5, 1.0, 1.0] }} }}]
+[ends.inlet]
+at = 0.0
+inward = "+x"
+velocity = 1.0
+profile = "parabola"
+"""
+
+
+@pytest.mark.parametrize(
+    "key, across",
+    [
+        ("periodic = ['z']", [1.0, 1.0, 1.0]),
+        ("symmetry = ['z.lower', 'z.upper']", [1.0, 1.0, 1.0]),
+        ("symmetry = ['z.lower']", [1.5, 1.125, 0.0]),
+        ("symmetry = ['z.upper']", [0.0, 1.125, 1.5]),
+        ("periodic = []", [0.0, 1.5, 0.0]),
+    ],
+)
+def test_a_parabola_has_sides_where_the_fluid_has(tmp_path, key, across):
+    """It repeats with its axis, and goes on behind a plane of symmetry.  The last is the control."""
+    [face] = faces_of(Scene(draft(tmp_path, DUCT.format(key))))
+    z = np.array([[0.0, 0.5, 0.0], [0.0, 0.5, 0.5], [0.0, 0.5, 1.0]])
+    assert face.shape(z) == pytest.approx(1.5 * np.array(across))
+
+
 def test_a_profile_runs_across_the_end(tmp_path):
     """In 2D not along z."""
     (tmp_path / "prof.csv").write_text("place,value\n0.0,1.0\n1.0,1.0\n")
