@@ -22,7 +22,7 @@ from psph.smoothing import kernel
 REACHES = 3.0
 """Supports of a level between its region and the end of its margin: a particle at the border has neighbours
 all around, and so have these.  The third leaves those who are born time to find their order before they lead:
-with two, a wave through borders stirs eddies of more than twice the energy."""
+with two, a wave through borders stirs eddies of twice the energy."""
 
 AROUND = 3.0
 """Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
