@@ -288,14 +288,19 @@ density = 800.0
 """
 
 
-def test_damping_grows_in_disorder_only_where_a_fluid_can_come_apart(tmp_path):
-    """A box that one fluid fills; controls: the same with two fluids, and with room above."""
+def test_damping_in_disorder_is_at_most_the_own_one_where_one_fluid_fills_the_domain(tmp_path):
+    """By the viscosity of the fluid, in 2D 8ν/(ch); controls: the same with two fluids, and with room above."""
 
     def more(*keys, of=FILLED):
         scene = Scene(draft(tmp_path, of, *keys))
         return ReconstructedDamping(0.03, 0.2).in_scene(scene).more
 
-    assert more("fluids.oil.density=1000.0") == 0.0
+    same = "fluids.oil.density=1000.0"
+    assert more(same) == 0.0
+    viscous = [f"fluids.{name}.viscosity" for name in ("water", "oil")]
+    acts = 8.0 * 0.01 / (10.0 * 0.14)  # 0.057
+    assert more(same, *(f"{key}=0.01" for key in viscous)) == pytest.approx(acts - 0.03)
+    assert more(same, *(f"{key}=1.0" for key in viscous)) == pytest.approx(0.17)
     assert more() == pytest.approx(0.17)
     assert more(of=FILLED.partition("[fluids.oil]")[0]) == pytest.approx(0.17)
 

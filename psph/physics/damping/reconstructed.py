@@ -148,9 +148,10 @@ class ReconstructedDamping(NamedTuple):
     a linear flow up to a free surface and a wall.  Frontiere, Raskin & Owen (2017), J. Comput. Phys. 332,
     160, for a viscosity on approach.  In disorder and at a surface, as :class:`LocalPotential
     <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to ``in_disorder`` where that
-    is larger, in scenes with a free surface or several fluids: psph's own.  A wall damps what approaches it
-    along its normal at more than 0.02 c, the excess alone, and nothing else; so does a fluid of another
-    density, at 0.1 c.  It conserves momentum and angular momentum.
+    is larger: psph's own; in a domain that one fluid fills, no higher than its own viscosity acts, so that
+    shear layers feel at most twice that.  A wall damps what approaches it along its normal at more than
+    0.02 c, the excess alone, and nothing else; so does a fluid of another density, at 0.1 c.  It conserves
+    momentum and angular momentum.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -164,9 +165,10 @@ class ReconstructedDamping(NamedTuple):
     ] = 0.0
 
     def in_scene(self, scene: Facts):
-        """The form that knows the spacing; α rises only where a fluid can come apart."""
+        """The form that knows the spacing, and how far α rises."""
         loose = scene.has_free_surface or several(scene)
-        more = max(self.in_disorder - self.alpha, 0.0) if loose else 0.0
+        most = self.in_disorder if loose else min(self.in_disorder, own_alpha(scene))
+        more = max(most - self.alpha, 0.0)
         images = images_of(scene)
         ends = isinstance(images, WithStrengths | EndingAtOthers) or not _all_flows(scene)
         form = DampingToEdges if ends else BesideLinearFlow
@@ -176,6 +178,12 @@ class ReconstructedDamping(NamedTuple):
     def conflicts(physics, kernel):
         """The rate of strain takes corrected gradients."""
         yield from needs_correction(physics)
+
+
+def own_alpha(scene: Facts) -> float:
+    """The α that acts as the most viscous fluid's own viscosity ν does: 2(d + 2) ν/(c h) in d dimensions."""
+    viscosity = max((one.viscosity for one in scene.species if one.is_fluid), default=0.0)
+    return 2.0 * (scene.dimensions + 2) * viscosity / (scene.sound_speed * scene.smoothing_length)
 
 
 def _all_flows(scene: Facts) -> bool:
