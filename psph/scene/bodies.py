@@ -6,6 +6,7 @@ import numpy as np
 
 from psph.case.parameters import as_numbers
 from psph.physics.fluid.friction import friction_step
+from psph.physics.fluid.rheology import thickest
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.lines import longest_step
@@ -73,8 +74,8 @@ def body_step(scene: Scene, passes: int = 1) -> float:
     share = lightest_share(scene)
     if share < 1.0:
         shortest = min(shortest, 0.5 * passes * share**0.5 * scene.smoothing_length / scene.sound_speed)
-    if share < BRAKED and (thickest := _thickest(scene)):
-        shortest = min(shortest, braked(share, friction_step(scene, thickest)))
+    if share < BRAKED and (viscosity := thickest(scene)):
+        shortest = min(shortest, braked(share, friction_step(scene, viscosity)))
     return shortest
 
 
@@ -98,15 +99,6 @@ def lightest_share(scene: Scene) -> float:
             layer = scene.species[number].density * surface * scene.smoothing_length
             found.append(_lightest(bodies, row, filled) / layer)
     return min(found)
-
-
-def _thickest(scene: Scene) -> float:
-    """The largest kinematic viscosity that a fluid may have, m²/s."""
-    fluids = (one for one in scene.species if one.is_fluid)
-    return max(
-        scene.rheologies[one.rheology - 1].largest / one.density if one.rheology else one.viscosity
-        for one in fluids
-    )
 
 
 def _lightest(bodies: Bodies, row: int, filled: Volume) -> float:

@@ -12,6 +12,7 @@ from psph.formula import helper, where
 from psph.physics.damping.matter import FluidsUnderTension, Matter, OneMatter, SeveralFluids, alike, matter_of
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
+from psph.physics.fluid.rheology import thickest
 from psph.physics.fluid.several import several
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
 from psph.physics.fluid.viscosity import braking_step, inverse_square, lighter, slower
@@ -182,8 +183,7 @@ class ReconstructedDamping(NamedTuple):
 
 def own_alpha(scene: Facts) -> float:
     """The α that acts as the most viscous fluid's own viscosity ν does: 2(d + 2) ν/(c h) in d dimensions."""
-    viscosity = max((one.viscosity for one in scene.species if one.is_fluid), default=0.0)
-    return 2.0 * (scene.dimensions + 2) * viscosity / (scene.sound_speed * scene.smoothing_length)
+    return 2.0 * (scene.dimensions + 2) * thickest(scene) / (scene.sound_speed * scene.smoothing_length)
 
 
 def _all_flows(scene: Facts) -> bool:

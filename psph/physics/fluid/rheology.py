@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.engine.jit import call_by_number
+from psph.physics.facts import Facts
 
 STILL = 1e-30
 """1/s: smaller rates count as this one, so that no law divides by zero and none needs a branch."""
@@ -24,6 +25,18 @@ def power(base: float, exponent: float) -> float:
         return base**exponent
     except (OverflowError, ZeroDivisionError):
         return math.inf
+
+
+def thickest(scene: Facts) -> float:
+    """The largest kinematic viscosity that a fluid may have, m²/s; 0 without fluids."""
+    fluids = (one for one in scene.species if one.is_fluid)
+    return max(
+        (
+            scene.rheologies[one.rheology - 1].largest / one.density if one.rheology else one.viscosity
+            for one in fluids
+        ),
+        default=0.0,
+    )
 
 
 class Newtonian(NamedTuple):
