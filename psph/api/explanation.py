@@ -14,11 +14,11 @@ from psph.simulation.plan import make_plan
 class Explanation(NamedTuple):
     """The plan of a case on so many ranks.
 
-    ``effects`` and ``laws`` (equations of state) each have ``name``, ``does`` and ``because``; ``absent``
-    says of each other effect why it is not there.  ``step_limits`` (s) are the bounds of the time step by
-    their names, at the expected speed; ``steps`` and ``seconds`` a guess of what the run takes;
-    ``bytes_per_rank`` the memory of a rank.  ``page`` are the lines that the command line prints, ``lines``
-    those that it prints with ``--all``.
+    ``effects`` and ``laws`` (equations of state) each have ``name``, ``does``, ``because`` and
+    ``in_force``; ``absent`` says of each other effect why it is not there. ``step_limits`` (s) are the
+    bounds of the time step by their names, at the expected speed; ``steps`` and ``seconds`` a guess of
+    what the run takes; ``bytes_per_rank`` the memory of a rank. ``page`` are the lines that the command
+    line prints, ``lines`` those that it prints with ``--all``.
     """
 
     title: str

@@ -194,16 +194,21 @@ def _hint_lines(scene, plan: Plan) -> Iterator[str]:
 
 
 class Acting(NamedTuple):
-    """An effect or an equation of state of a scene: what it does, and what calls for it."""
+    """An effect or an equation of state of a scene: what it does, what calls for it, and the numbers that a
+    scene gives it in place of those of the key, if any."""
 
     name: str
     does: str
     because: str
+    in_force: str = ""
 
 
 def acting(plan: Plan) -> list[Acting]:
     """The effects of the scene."""
-    return [Acting(call.name, _first_line(call.effect), call.reason) for call in plan.called]
+    return [
+        Acting(call.name, _first_line(call.effect), call.reason, getattr(call.effect, "in_force", ""))
+        for call in plan.called
+    ]
 
 
 def laws_of(plan: Plan) -> list[Acting]:
@@ -217,6 +222,8 @@ def laws_of(plan: Plan) -> list[Acting]:
 def _acting_lines(one: Acting, width: int) -> Iterator[str]:
     yield f"  {one.name:<{width}}{one.does}"
     yield f"  {'':<{width}}because: {one.because}"
+    if one.in_force:
+        yield f"  {'':<{width}}in force: {one.in_force}"
 
 
 def _width(plan: Plan) -> int:

@@ -287,9 +287,15 @@ shape.box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }
 density = 800.0
 """
 
+SOIL = """[soils.sand]
+young = 1e5
+poisson = 0.3
+friction_angle = 30.0"""
+
 
 def test_damping_in_disorder_is_at_most_the_own_one_where_one_fluid_fills_the_domain(tmp_path):
-    """By the viscosity of the fluid, in 2D 8ν/(ch); controls: the same with two fluids, and with room above."""
+    """By the viscosity of the fluid, in 2D 8ν/(ch); controls: the same with two fluids, with a tension between
+    alike ones, beside soil, and with room above."""
 
     def more(*keys, of=FILLED):
         scene = Scene(draft(tmp_path, of, *keys))
@@ -302,6 +308,8 @@ def test_damping_in_disorder_is_at_most_the_own_one_where_one_fluid_fills_the_do
     assert more(same, *(f"{key}=0.01" for key in viscous)) == pytest.approx(acts - 0.03)
     assert more(same, *(f"{key}=1.0" for key in viscous)) == pytest.approx(0.17)
     assert more() == pytest.approx(0.17)
+    assert more(same, "fluids.water.interfacial_tension={oil=0.03}") == pytest.approx(0.17)
+    assert more(of=FILLED.replace("[fluids.oil]", SOIL)) == pytest.approx(0.17)
     assert more(of=FILLED.partition("[fluids.oil]")[0]) == pytest.approx(0.17)
 
 

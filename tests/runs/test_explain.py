@@ -89,6 +89,15 @@ def test_one_rank_of_an_open_domain_sends_nothing_and_two_send_to_one_side(tmp_p
     assert sent[0] == 0.0 < sent[1] and sent[2] == sent[3] == 2 * sent[1]
 
 
+@pytest.mark.parametrize("top, strongest", [(1.0, "0.03"), (0.9, "0.2")])
+def test_explain_says_which_damping_is_in_force(tmp_path, top, strongest):
+    """In a filled domain without viscosity it does not rise in disorder; control: one with a surface."""
+    text = "space = { dimensions = 2, spacing = 0.1, lower = [0.0, 0.0], upper = [1.0, 1.0], periodic = ['x', 'y'] }\n"
+    text += f"time.end = 1.0\nphysics.sound_speed = 10.0\nfluids.water.shape.box = {{ lower = [0, 0], upper = [1, {top}] }}"
+    told = [line.strip() for line in explain(Scene(draft(tmp_path, text)), 1) if "in force" in line]
+    assert told == [f"in force: alpha 0.03, in disorder {strongest}"]
+
+
 def test_explain_says_what_comes_from_the_profile(tmp_path):
     text = 'profile = "quick"\n' + BOX.replace("jitter", "viscosity = 1e-3\njitter").replace(
         'scheme = "sph"\n', ""

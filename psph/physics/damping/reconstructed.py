@@ -13,7 +13,6 @@ from psph.physics.damping.matter import FluidsUnderTension, Matter, OneMatter, S
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.rheology import thickest
-from psph.physics.fluid.several import several
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
 from psph.physics.fluid.viscosity import braking_step, inverse_square, lighter, slower
 from psph.vectors import add, dot, scale, subtract, times, zero_like
@@ -149,10 +148,10 @@ class ReconstructedDamping(NamedTuple):
     a linear flow up to a free surface and a wall.  Frontiere, Raskin & Owen (2017), J. Comput. Phys. 332,
     160, for a viscosity on approach.  In disorder and at a surface, as :class:`LocalPotential
     <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to ``in_disorder`` where that
-    is larger: psph's own; in a domain that one fluid fills, no higher than its own viscosity acts, so that
-    shear layers feel at most twice that.  A wall damps what approaches it along its normal at more than
-    0.02 c, the excess alone, and nothing else; so does a fluid of another density, at 0.1 c.  It conserves
-    momentum and angular momentum.
+    is larger: psph's own; in a domain that one fluid fills, soils and tensions apart, no further than its own
+    viscosity acts.  A wall damps what approaches it along its normal at more than 0.02 c, the excess alone,
+    and nothing else; so does a fluid of another density, at 0.1 c.  It conserves momentum and angular
+    momentum.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -161,16 +160,19 @@ class ReconstructedDamping(NamedTuple):
     in_disorder: Annotated[
         float,
         Field(
-            ge=0, description="α in disorder and at a surface, where larger", json_schema_extra={"unit": "1"}
+            ge=0,
+            description="α in disorder and at a surface, where larger; where one fluid fills the domain no "
+            "larger than its own viscosity acts",
+            json_schema_extra={"unit": "1"},
         ),
     ] = 0.0
 
     def in_scene(self, scene: Facts):
         """The form that knows the spacing, and how far α rises."""
-        loose = scene.has_free_surface or several(scene)
-        most = self.in_disorder if loose else min(self.in_disorder, own_alpha(scene))
-        more = max(most - self.alpha, 0.0)
         images = images_of(scene)
+        filled = isinstance(images, Whole) and not scene.has_free_surface
+        most = min(self.in_disorder, own_alpha(scene)) if filled else self.in_disorder
+        more = max(most - self.alpha, 0.0)
         ends = isinstance(images, WithStrengths | EndingAtOthers) or not _all_flows(scene)
         form = DampingToEdges if ends else BesideLinearFlow
         return form(self.alpha, (NEAR * scene.spacing) ** 2, more, images)
@@ -227,6 +229,11 @@ class BesideLinearFlow(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         return along_pair(self, beside_flow(self, i, j, pair), i, j, pair)
 
+    @property
+    def in_force(self) -> str:
+        """The two α of the scene."""
+        return f"alpha {self.alpha:.3g}, in disorder {self.alpha + self.more:.3g}"
+
     def longest_step(self, scene):
         """That of :class:`psph.physics.fluid.viscosity.PairDamping`, of the largest α, s."""
         return braking_step(self.alpha + self.more, scene)
@@ -248,7 +255,7 @@ class DampingToEdges(NamedTuple):
 
     writes = (STRAIN, FACING)
     lagged, slow = True, True
-    longest_step = BesideLinearFlow.longest_step
+    longest_step, in_force = BesideLinearFlow.longest_step, BesideLinearFlow.in_force
 
     def start(self, i):
         """No neighbour yet."""
@@ -295,6 +302,7 @@ class InFluid(NamedTuple):
     writes, lagged, slow = DampingToEdges.writes, True, True
     start, gather = DampingToEdges.start, DampingToEdges.gather
     finish_value, longest_step = DampingToEdges.finish_value, DampingToEdges.longest_step
+    in_force = BesideLinearFlow.in_force
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
