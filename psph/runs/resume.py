@@ -20,11 +20,15 @@ from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path
 from psph.particles.store import Store
 from psph.runs.record import Record
 from psph.runs.watch import SOONEST
+from psph.scene import Scene
 from psph.simulation.plan import Plan
 from psph.simulation.step import Simulation
 
 MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": True, "numbers": True}
 """Keys of a case that change no step: a run that goes on may have others."""
+
+AHEAD = {"has_free_surface": "a free surface opens until then", "sound_speed": "c rests on it"}
+"""What a scene looks ahead to its end for, and what to say where a later end changes that."""
 
 
 def case_digest(case) -> str:
@@ -95,6 +99,8 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
         raise CheckpointError(
             f"{saved.path}: time.end = {case.time.end:g} s is not after it, at {now:.6g} s: give a later end"
         )
+    if extend:
+        _stays_one_run(case, _case_of(folder, comm, (), given))
     return case.under(saved.header["name"]), saved
 
 
@@ -114,6 +120,19 @@ def _case_of(folder: Path, comm, extend: Sequence[str], given):
                 "or start it again"
             ) from None
         raise
+
+
+def _stays_one_run(case, before) -> None:
+    """CheckpointError where the end of a case makes another scene of it than that of the case ``before``."""
+    if case.time.end == before.time.end:
+        return
+    scene, earlier = Scene(case), Scene(before)
+    for name, why in AHEAD.items():
+        if getattr(scene, name) != getattr(earlier, name):
+            raise CheckpointError(
+                f"{case.file}: time.end = {case.time.end:g} s: would make it another run, since {why}; start "
+                "the case again with this end"
+            )
 
 
 def _allowed(extend: Sequence[str]) -> Sequence[str]:

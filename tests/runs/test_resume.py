@@ -292,6 +292,43 @@ def test_an_end_that_is_past_is_refused(whole):
         take_up(whole, COMM, ["time.end=0.1"])
 
 
+LIFTED = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 0.2
+physics.sound_speed = 20.0
+checkpoint.every = 3
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [0.5, 0.5] }
+[walls.tank.shape.difference]
+from.box = { lower = [-0.3, -0.3], upper = [0.8, 1.2] }
+minus = [{ box = { lower = [0.0, 0.0], upper = [0.5, 1.2] } }]
+[walls.lid]
+shape.box = { lower = [0.0, 0.5], upper = [0.5, 0.8] }
+motion = { translation = [0.0, 1.0], start = 0.4 }
+"""
+DRIVEN = """
+space = { dimensions = 2, spacing = 0.1, periodic = ["x", "y"], lower = [0.0, 0.0], upper = [1.2, 1.2] }
+time.end = 0.2
+physics.gravity = [1.0, 0.0]
+checkpoint.every = 3
+fluids.water.shape.box = { lower = [0.0, 0.0], upper = [1.2, 1.2] }
+"""
+
+
+@pytest.mark.parametrize(
+    "text, end, why", [(LIFTED, 2.0, "free surface opens"), (DRIVEN, 0.3, "c rests on it")]
+)
+def test_an_end_that_makes_another_scene_is_refused(text, end, why, tmp_path):
+    """The folder stays as it is; control: with what the end decides given, or not reached by then, it goes on."""
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    for name, *keys in ("run",), ("given", "physics.sound_speed=20.0"):
+        run(load(tmp_path / "case.toml", keys), tmp_path / name, COMM, **QUIET)
+    with pytest.raises(CheckpointError, match=f"would make it another run, since .*{why}"):
+        resume(tmp_path / "run", COMM, [f"time.end={end}"], **QUIET)
+    assert load(tmp_path / "run/case.toml").time.end == 0.2
+    assert resume(tmp_path / "given", COMM, ["time.end=0.3"], **QUIET)
+
+
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
 def test_the_case_that_a_run_leaves_is_the_same_case(path, tmp_path):
     case = load(path)
