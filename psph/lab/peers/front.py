@@ -1,5 +1,6 @@
 """The front: what error each code had for what seconds, drawn from the tables of the page."""
 
+import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,6 +22,10 @@ ACROSS, LEGEND = 2, 1.3
 
 SIZE = re.compile(r", (\d+²|dx [\d.]+)$")
 """The end of a label that says how fine a run is: those that differ by it alone are joined."""
+
+
+DECADE = 10.0
+"""The largest error of a panel over the smallest, at least: near errors shall look near."""
 
 
 class Dot(NamedTuple):
@@ -88,6 +93,9 @@ def _panel(axes: Axes, title: str, curves: Mapping[str, list[Dot]], colours: Map
             place = {"xytext": (4, 4), "textcoords": "offset points", "size": 7, "color": style.PALE}
             axes.annotate(said, (point.seconds, point.error), **place)
     axes.margins(0.25, 0.15)
+    low, high = axes.get_ylim()
+    wider = max(math.sqrt(DECADE * low / high), 1.0)
+    axes.set_ylim(low / wider, high * wider)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(lambda number, _: f"{number:g}")
