@@ -102,6 +102,11 @@ SOIL = (
     "friction_angle=30.0, geostatic=false}"
 )
 
+TOGETHER = {"DeviatorRate": ("StressSlopes",), "ContactLine": ("ContactAngle",), "SolidTurn": ("NoSlip",)}
+"""Effects that read what another writes, and are not there without it."""
+
+BAR = "solids.bar={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, density=1900.0, young=1e6, poisson=0.3, no_slip=true}"
+
 VISCOUS = "fluids.water.viscosity=0.001"
 
 STICKY = ("walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}, no_slip=true}", VISCOUS)
@@ -135,6 +140,8 @@ def calling_for(entry) -> list[str]:
         return ["fluids.water.rheology.bingham={yield_stress=1.0, plastic_viscosity=0.1}"]
     if key == "soils.*":
         return [SOIL]
+    if key.startswith("solids.*"):
+        return [BAR, VISCOUS]
     if "*" in key:
         return [f"{key.replace('*', 'water')}=0.001"]
     if key == "frame.motion":
@@ -165,10 +172,10 @@ WET = [one for one in CATALOGUE if not one.key.startswith("anvils.") and one.eff
 """Anvils and contact are there for scenes of solids alone: tests/simulation/test_contact.py."""
 OF_GASES = [one for one in CATALOGUE if getattr(one.effect, "acts", ()) == (IDEAL_GASES,)]
 IN_SPACE = [one for one in CATALOGUE if one.key == "physics.self_gravity"]
-ALONE = [one for one in WET if one not in (*OF_GASES, *IN_SPACE) and one.effect.__name__ != "SmoothFace"]
+READS_BACK = ("SmoothFace", "StressSlopes")
+ALONE = [one for one in WET if one not in (*OF_GASES, *IN_SPACE) and one.effect.__name__ not in READS_BACK]
 """Without those of ideal gases, which are no fluid, those that need three dimensions
-(tests/simulation/test_attraction.py), and the one whose normal the rate of a stress reads, and which
-reads that stress: neither can be alone."""
+(tests/simulation/test_attraction.py), and those that a rate of stress reads and that read that stress."""
 
 KEYED, ALL = (long_but_for(SHORT, entries, name_of) for entries in ([e for e in CATALOGUE if e.key], ALONE))
 
@@ -186,12 +193,14 @@ def test_an_absent_effect_leaves_everything_as_it_was_before_it_existed(entry, f
 def test_a_present_effect_costs_instructions(entry, footprint, loop):
     scene = calling_for(entry) if entry.key else []
     shared = () if entry.effect.__name__ != "DeviatorRate" else BEARS
-    both = [[e for e in c if e.effect.__name__ not in shared] for c in (CATALOGUE, without(entry))]
-    on, off = (footprint(catalogue, *scene) for catalogue in both)
-    [added] = on.effects - off.effects  # the effect, or its form for the scene
-    assert off.effects < on.effects
+    gone = TOGETHER.get(entry.effect.__name__, ())
+    present = [e for e in CATALOGUE if e.effect.__name__ not in shared]
+    absent = [e for e in present if e is not entry and e.effect.__name__ not in gone]
+    on, off = (footprint(catalogue, *scene) for catalogue in (present, absent))
+    added = on.effects - off.effects  # the effect, or its form for the scene, and those that go with it
+    assert off.effects < on.effects and len(added) == 1 + len(gone)
     more = instructions(loop, on) - instructions(loop, off)
-    assert more > 0 or not IN_PAIRS & vars(added).keys()
+    assert more > 0 or not any(IN_PAIRS & vars(one).keys() for one in added)
     assert set(off.arrays) <= set(on.arrays) and set(off.read) <= set(on.read)
     assert on.sent >= off.sent
 
