@@ -102,7 +102,12 @@ SOIL = (
     "friction_angle=30.0, geostatic=false}"
 )
 
-TOGETHER = {"DeviatorRate": ("StressSlopes",), "ContactLine": ("ContactAngle",), "SolidTurn": ("NoSlip",)}
+TOGETHER = {
+    "DeviatorRate": ("StressSlopes",),
+    "ContactLine": ("ContactAngle",),
+    "LineMemory": ("ContactAngle",),
+    "SolidTurn": ("NoSlip",),
+}
 """Effects that read what another writes, and are not there without it."""
 
 BAR = "solids.bar={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, density=1900.0, young=1e6, poisson=0.3, no_slip=true}"
