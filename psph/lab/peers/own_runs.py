@@ -75,7 +75,7 @@ RUNS: dict[str, Runs] = {
             ("physics.sound_speed=10", "time.end=1.0", "output.frames=1.0"),
         ),
         **_ladder("hard/taylor_green.toml", VORTICES, SIDES),
-        "psph, default scheme, jittered, 50²": (
+        f"psph, {DEFAULT}, jittered, 50²": (
             "hard/taylor_green.toml",
             (*VORTICES, "fluids.water.jitter=0.1"),
         ),
@@ -90,8 +90,8 @@ RUNS: dict[str, Runs] = {
         **_schemes("hard/tank.toml", (*TANK, "space.spacing=0.02"), SCHEMES, "dx 0.02"),
     },
     "box": {
-        "psph, default scheme, half": ("dam_break_on_box.toml", (*BOX, *SENSOR)),
-        "psph, default scheme, whole": ("dam_break_on_box.toml", (*BOX, *SENSOR, *WHOLE)),
+        f"psph, {DEFAULT}, half": ("dam_break_on_box.toml", (*BOX, *SENSOR)),
+        f"psph, {DEFAULT}, whole": ("dam_break_on_box.toml", (*BOX, *SENSOR, *WHOLE)),
         **_schemes("dam_break_on_box.toml", (*BOX, *SENSOR), {PLAIN: SCHEMES[PLAIN]}, "half"),
     },
 }
