@@ -1,6 +1,6 @@
 """What a kind of matter does on a rank within a step: its stages, and its work at each moment."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -64,6 +64,11 @@ class Work:
 
     def before_sums(self, dt: float) -> None:
         """Ready what the passes over pairs read, ``dt`` s after the last ones."""
+
+    def loops(self, one: Any, loop: Any, seen: tuple, sums: Any) -> Iterable[tuple[Any, tuple]] | None:
+        """Loops in the place of the compiled ``loop`` of the pass ``one`` over all particles, each with what
+        it takes beside columns, by what is ``seen`` and where its ``sums`` go; None: that one."""
+        return None
 
     def after_sums(self, time: float, dt: float) -> None:
         """Forces at ``time``, s, by what the passes have summed."""

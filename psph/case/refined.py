@@ -12,7 +12,7 @@ from psph.physics.walls.conditions import BEARING, MIRROR
 
 
 class Refined(Table):
-    """A region whose fluid and walls have a finer spacing."""
+    """A region whose fluid, walls and bodies have a finer spacing."""
 
     shape: Shape = key("the region")
     factor: Literal[2, 4, 8] = key("how many times finer particles are there", 2, unit="1")
@@ -36,18 +36,19 @@ def _unfit(case) -> Iterator[tuple[Location, str]]:
     for entry in case.entries:
         if entry.of.word == FLUIDS:
             yield from _unfit_flow(entry)
-        elif entry.of.rigid and not entry.of.whole:
-            yield from _unfit_wall(entry)
+        elif entry.of.rigid:
+            if entry.of.condition not in (*BEARING, MIRROR):
+                yield (*entry.loc, "condition"), "it counts on one spacing"
         else:
-            yield entry.loc, "only fluids and walls have them"
+            yield entry.loc, "only fluids, walls and bodies have them"
     for table, of in case.tables_of(Answering).items():
         if not issubclass(of, Placed) and getattr(case, table):
             yield (table,), "what comes, goes or stops has one spacing"
     if len(flowing) > 1:
         yield flowing[1].loc, "one fluid has them"
     for name, gauge in case.gauges.items():
-        if gauge.force or gauge.sensor:
-            yield ("gauges", name), "forces on walls of several sizes are not summed"
+        if gauge.sensor:
+            yield ("gauges", name), "the pressure on walls of several sizes is not told"
     if case.frame.motion is not None:
         yield ("frame", "motion"), "frames with levels of sizes rest"
     if case.precision != "double":
@@ -63,10 +64,3 @@ def _unfit_flow(entry: Named) -> Iterator[tuple[Location, str]]:
     for told in ("jitter", "start"):
         if getattr(entry.of, told) not in (0.0, "lattice"):
             yield (*entry.loc, told), "finer particles start on a lattice"
-
-
-def _unfit_wall(entry: Named) -> Iterator[tuple[Location, str]]:
-    if entry.of.motion is not None:
-        yield (*entry.loc, "motion"), "walls with levels of sizes rest"
-    if entry.of.condition not in (*BEARING, MIRROR):
-        yield (*entry.loc, "condition"), "it counts on one spacing"

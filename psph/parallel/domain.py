@@ -145,12 +145,12 @@ class Domain:
         # Ids and groups of ghosts do not travel: a loop may ask a ghost for fields alone.
         told = () if self.sizes is None else (self.sizes.listed,)
         self.halo.refresh(self.ghost_fields + self.refreshed + told)
+        sought = None if self.sought is None else self.store[self.sought]
         if self.sizes is not None:
             store, listed = self.store, self.store[self.sizes.listed]
             across = self.sizes.looks_across(store.group[: store.total])
-            self.lists = list_by_levels(
-                self._used_lists(), store["position"], listed, across, self.sizes, self._slab(), lanes
-            )
+            told = store["position"], listed, across, self.sizes, self._slab(), lanes, sought
+            self.lists = list_by_levels(self._used_lists(), *told)
             return
         self.lists = neighbours.build(
             self._used_lists(),
@@ -161,7 +161,7 @@ class Domain:
             self.cutoff,
             self.periods,
             lanes,
-            None if self.sought is None else self.store[self.sought],
+            sought,
             self._fill,
         )
 

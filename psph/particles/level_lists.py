@@ -1,73 +1,79 @@
-"""Lists where particles are of several levels of sizes: pairs of one level, and who is followed."""
+"""Lists where particles are of several levels of sizes: pairs of one level, and those who lead."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import compiled, register_jitable
+from psph.engine.jit import compiled
 from psph.particles.neighbours import Neighbours, entries_for
-from psph.vectors import at, dot, nearest_image, subtract
 
 
 class Membership(NamedTuple):
-    """Of each column its ``level``, whether it ``follows`` and whether it ``leads``; its ``position``, m, and
-    up to which squared distance it is seen, ``within2``, m²; ``periods`` in m or None."""
+    """Of each column its ``level`` and whether it ``leads``."""
 
     level: np.ndarray
-    follows: np.ndarray
     leads: np.ndarray
-    position: tuple
-    within2: np.ndarray
-    periods: tuple
 
 
-def part_levels(lists: Neighbours, low: int, owned: int, of: Membership, lanes: int) -> Neighbours:
-    """Leave in the rows of ``owned`` particles those of their own level; returned are rows of those that lead
-    on other levels, of whoever follows, in the same order."""
-    lengths = np.zeros(len(lists.lengths), np.uint32)
-    count_led(owned, low, lists, of, lengths)
-    ends = np.cumsum(lengths, dtype=np.uint64)
-    led = Neighbours(ends - lengths, lengths, entries_for(int(ends[-1]) if len(ends) else 0))
-    move_led(owned, low, lists, of, led, lanes)
-    return led
+def rows_of_leaders(
+    lists: Neighbours, low: int, owned: int, of: Membership, asked: np.ndarray, same: bool, lanes: int
+) -> Neighbours:
+    """Rows of those ``owned`` columns from ``low`` on that are ``asked`` (columns,): whoever leads of their
+    entries in ``lists``, in the same order, on the ``same`` level or on others.
 
-
-@register_jitable
-def is_led(of, k, j):
-    """Whether the column ``j`` leads ``k`` on another level, near enough."""
-    if not of.leads[j] or of.level[j] == of.level[k]:
-        return False
-    x_jk = nearest_image(subtract(at(of.position, j), at(of.position, k)), of.periods)
-    return dot(x_jk, x_jk) < of.within2[j]
+    They are filled up to a multiple of ``lanes`` with the particle itself; all other rows are empty.
+    """
+    most = np.where(asked[low : low + owned], lists.lengths[:owned], 0).astype(np.uint64)
+    room = -(-most // np.uint64(lanes)) * np.uint64(lanes)
+    ends = np.cumsum(room, dtype=np.uint64)
+    lengths = np.zeros(owned, np.uint32)
+    found = Neighbours(ends - room, lengths, entries_for(int(ends[-1]) if owned else 0))
+    name_leaders(owned, low, lists, of, asked, same, lanes, found)
+    return found
 
 
 @compiled
-def count_led(owned, low, lists, of, lengths):
-    """How many entries of each row are of those who lead it."""
+def name_leaders(owned, low, lists, of, asked, same, lanes, found):
+    """The entries of :func:`rows_of_leaders`, and how many each row has."""
+    one = np.uint64(1)
     for row in range(np.uint64(owned)):
-        k = row + np.uint64(low)
-        if of.follows[k]:
-            begin = lists.begin[row]
-            for n in range(begin, begin + np.uint64(lists.lengths[row])):
-                j = np.uint64(lists.lists[n])
-                lengths[row] += np.uint32(is_led(of, k, j))
+        k, begin, end = row + np.uint64(low), lists.begin[row], found.begin[row]
+        if not asked[k]:
+            continue
+        for n in range(begin, begin + np.uint64(lists.lengths[row])):
+            j = np.uint64(lists.lists[n])
+            if of.leads[j] and (of.level[j] == of.level[k]) == same:
+                found.lists[end] = j
+                end += one
+        found.lengths[row] = end - found.begin[row]
+        while (end - found.begin[row]) % np.uint64(lanes) != np.uint64(0):
+            found.lists[end] = k
+            end += one
 
 
 @compiled
-def move_led(owned, low, lists, of, led, lanes):
-    """Move these entries to the rows of ``led``; what is left of each row ends with the particle itself."""
+def find_beside(owned, low, lists, leads, beside):
+    """Which of the rows of ``owned`` columns from ``low`` on name anyone who ``leads`` (columns,)."""
+    for row in range(np.uint64(owned)):
+        n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
+        while n < end and not beside[row]:
+            beside[row] = leads[np.uint64(lists.lists[n])]
+            n += np.uint64(1)
+
+
+@compiled
+def keep_level(owned, low, lists, level):
+    """Leave in each row those of its particle's own ``level`` (columns,), in the same order; what is left of
+    it ends with the particle itself."""
     one = np.uint64(1)
     for row in range(np.uint64(owned)):
         k, begin = row + np.uint64(low), lists.begin[row]
-        end, kept, moved = begin + np.uint64(lists.lengths[row]), begin, led.begin[row]
+        end, kept = begin + np.uint64(lists.lengths[row]), begin
         for n in range(begin, end):
             j = np.uint64(lists.lists[n])
-            if of.level[j] == of.level[k]:
+            if level[j] == level[k]:
                 lists.lists[kept] = j
                 kept += one
-            elif of.follows[k] and is_led(of, k, j):
-                led.lists[moved] = j
-                moved += one
         for n in range(kept, end):
             lists.lists[n] = k
         lists.lengths[row] = kept - begin

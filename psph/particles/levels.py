@@ -14,6 +14,7 @@ from psph.engine.jit import compiled, inside, overload, register_jitable
 from psph.engine.simd import bits, consecutive, width_of
 from psph.engine.threads import in_threads
 from psph.particles.lanes import LANES, append_near, consecutive_each
+from psph.particles.level_rows import OwnedRows, holds_sought, looks
 from psph.particles.neighbours import Neighbours, empty, entries_for
 from psph.particles.sizes import Sizes
 from psph.particles.store import SPARE
@@ -83,36 +84,29 @@ class Grids(NamedTuple):
     periods: tuple
 
 
-class OwnedRows(NamedTuple):
-    """OwnedRows to fill: of the ``owned`` columns from ``low`` on, up to a ``multiple`` of entries;
-    ``across`` (n,) says who of the grids looks beyond its own level."""
-
-    low: int
-    owned: int
-    multiple: int
-    across: np.ndarray
-
-
 def list_by_levels(
-    room: Neighbours, position, listed, across: np.ndarray, sizes: Sizes, slab: Slab, lanes: int
+    room: Neighbours, position, listed, across: np.ndarray, sizes: Sizes, slab: Slab, lanes: int, sought=None
 ) -> Neighbours:
-    """Lists of the owned particles: of all that are nearer than the larger reach of both.
+    """Lists of the owned particles: of all that are nearer than the larger reach of both, or than the reach
+    of these where ``sizes`` ask for that.
 
     ``position`` are component arrays and ``listed`` the smoothing lengths, m, of all columns; who does not
-    look ``across`` (columns,) lists its own level alone.  OwnedRows are
-    filled up to a multiple of ``lanes`` with the particle itself.  ``room`` is used again where it is large
-    enough.
+    look ``across`` (columns,) lists its own level alone.  Where ``sought`` is given (columns,) a row stays
+    empty that has no column above 0 in the cells around.  Rows are filled up to a multiple of ``lanes`` with
+    the particle itself.  ``room`` is used again where it is large enough.
     """
     if not slab.owned:
         return empty(0, 0)
     total = slab.low + slab.owned + slab.high
     grids = grids_of([x[:total] for x in position], sizes.reach(listed[:total]), slab)
-    across = across[grids.columns]
+    across, before = across[grids.columns], np.zeros(0 if sought is None else total + 1, np.int64)
+    if sought is not None:
+        np.cumsum(sought[grids.columns] > 0.0, out=before[1:])
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
     while True:
-        rows = OwnedRows(slab.low, slab.owned, lanes, across)
+        rows = OwnedRows(slab.low, slab.owned, lanes, across, float(sizes.mutual), before)
         needed = max(in_threads(fill_levels, 0, len(grids.keys), grids, rows, room))
         if needed == 0:
             return room
@@ -244,11 +238,12 @@ def gap(low, high, cell, inverse, count):
 
 
 @inside
-def candidates(grids, low, high, reach, ranges):
-    """Ranges of particles in cells around a box, into the rows of ``ranges`` (most, 2); these, with more room
-    where that is needed, how many there are, and how many particles they hold at the most."""
+def candidates(grids, low, high, reach, levels, ranges):
+    """Ranges of particles of some ``levels``, from one to before another, in cells around a box, into the
+    rows of ``ranges`` (most, 2); these, with more room where that is needed, how many there are, and how many
+    particles they hold at the most."""
     many, held = 0, 0
-    for level in range(len(grids.reach)):
+    for level in range(levels[0], levels[1]):
         n, per, box = grids.counts[level], grids.inverse[level], grids.box[level]
         far = max(reach, grids.reach[level]) * WIDER
         first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0])
@@ -330,10 +325,10 @@ def _typed_near_bits(x_i, within2_i, grids, m):
 
 
 @inside
-def append_row(entries, end, m, grids, ranges, least, most):
+def append_row(entries, end, m, within2_i, grids, ranges, least, most):
     """Write the columns of the neighbours of particle ``m`` of the grids behind ``end``, of those in the
     ``ranges`` from number ``least`` to before ``most``; returns the new end."""
-    x_i, within2_i, first, one = at(grids.position, m), grids.within2[m], end, np.uint64(1)
+    x_i, first, one = at(grids.position, m), end, np.uint64(1)
     for r in range(least, most):
         stop = np.uint64(ranges[r, 1])
         for n in range(np.uint64(ranges[r, 0]), stop, width_of(grids.within2)):
@@ -361,8 +356,11 @@ def fill_levels(first, last, grids, rows, room):
             level += 1
         # The particles of a cell have the same candidates.
         low, high, reach = extent(grids, starts[cell], starts[cell + 1])
-        ranges, many, held = candidates(grids, low, high, reach, ranges)
+        levels = (0, len(grids.reach)) if looks(rows, starts[cell], starts[cell + 1]) else (level, level + 1)
+        ranges, many, held = candidates(grids, low, high, rows.own * reach, levels, ranges)
         own = of_level(grids, level, ranges, many)
+        many = many if holds_sought(rows.sought, ranges, many) else 0
+        own = own if many else (0, 0)
         for m in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
             k = np.int64(grids.columns[m])
             row = k - rows.low
@@ -373,7 +371,8 @@ def fill_levels(first, last, grids, rows, room):
                 guess = (np.int64(end) - begun + held) * starts[len(starts) - 1] // done
                 return max(guess, len(entries)) + held + rows.multiple
             least, most = (0, many) if rows.across[m] else own
-            begin, end = end, append_row(entries, end, m, grids, ranges, least, most)
+            within2 = rows.own * grids.within2[m]
+            begin, end = end, append_row(entries, end, m, within2, grids, ranges, least, most)
             room.begin[row], room.lengths[row] = begin, end - begin
             while (end - begin) % np.uint64(rows.multiple) != np.uint64(0):
                 entries[end] = k

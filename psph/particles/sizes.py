@@ -27,8 +27,8 @@ class Sizes(NamedTuple):
     fields that hold h, the ``length``, and that of when lists were made, ``listed``; ``between`` is the
     shortest distance of two mirrors across one axis, m.  Lists reach ``growth`` + ``skin`` times the support:
     the ways that both of a pair have strayed, and what lengths have grown by, share what is more than 1.
-    ``across`` (groups,) says which groups list others of all levels of sizes, and not of their own alone;
-    None: all do."""
+    ``across`` (groups,) says which groups list others of all levels of sizes, each as far as that one
+    reaches, and not of their own alone; None: all do, as far as one of the two reaches."""
 
     support: float
     skin: float
@@ -41,6 +41,11 @@ class Sizes(NamedTuple):
     def reach(self, length):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""
         return (self.growth + self.skin) * self.support * length
+
+    @property
+    def mutual(self) -> bool:
+        """Whether a particle lists all that it reaches itself, and not only those that reach it."""
+        return self.across is None
 
     def looks_across(self, group: np.ndarray) -> np.ndarray:
         """Whether particles of some ``group`` (n,) list others of all levels (n,)."""

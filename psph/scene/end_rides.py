@@ -9,7 +9,7 @@ from psph.case.ends import OpenEnd
 from psph.case.keys import AXES
 from psph.physics.motion import is_rigid, moments, told_of
 from psph.physics.rigid.pose import maps
-from psph.scene.moving import MOMENTS
+from psph.scene.sweeps import MOMENTS
 
 STRAY = 1e-9
 """Spacings by which a wall that carries a plane may leave the axis."""

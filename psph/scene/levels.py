@@ -17,6 +17,7 @@ import numpy as np
 from psph.case.keys import AXES
 from psph.moments import normalised
 from psph.scene.forms.make import form_of
+from psph.scene.shapes import Corner, bounds
 from psph.smoothing import kernel
 
 REACHES = 3.0
@@ -87,31 +88,64 @@ class Levels:
         ``corner`` (n,)."""
         return points - self.to_corners(level)[corner.astype(np.int64)] if level else points
 
-    def sites(self, level: int, extra: float = 0.0) -> np.ndarray:
-        """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more."""
+    def sites(self, level: int, extra: float = 0.0, room: tuple[Corner, Corner] | None = None) -> np.ndarray:
+        """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more; in a box, the
+        ``room``, alone where that is told."""
         lattice, points = self.layout.lattice, []
         coarser, corners = lattice.within_cell(2 ** (level - 1)), self.to_corners(level)
         wide = self.margin(level) + extra
         for first, last in lattice.chunks():
             grid, shape = lattice.grid(first, last), lattice.shape(first, last)
             middle = np.stack([np.broadcast_to(x, shape).ravel() for x in grid], axis=1)
+            middle = middle if room is None else middle[self._near_box(middle, *room)]
             middle = middle[self.outside(level, middle) < wide + self.layout.spacing]
             parents = (middle[:, None, :] + coarser[None, :, :]).reshape(-1, middle.shape[1])
             parents = parents[self.outside(level, parents) < wide]
             points.append((parents[:, None, :] + corners[None, :, :]).reshape(-1, middle.shape[1]))
         return np.concatenate(points)
 
-    def held(self, level: int, number: int, extra: float = 0.0) -> np.ndarray | None:
+    def held(
+        self, level: int, number: int, extra: float = 0.0, room: tuple[Corner, Corner] | None = None
+    ) -> np.ndarray | None:
         """Those of :meth:`sites` that a part of the layout has; None without any."""
-        points = self.sites(level, extra)
+        points = self.sites(level, extra, room)
         found = self.layout.held([*points.T], (len(points),)) if len(points) else np.zeros(0)
         return points[found == number] if (found == number).any() else None
+
+    def around(self, number: int) -> int:
+        """The finest level whose region has the middle of a part of the layout."""
+        if self.count == 1:
+            return 0
+        lower, upper = bounds(self.layout.parts[number].shape)
+        middle = 0.5 * (np.array([lower]) + np.array([upper]))
+        return max(level for level in range(self.count) if self.outside(level, middle)[0] < 0.0)
+
+    def filled(self, level: int, number: int) -> Iterator[np.ndarray]:
+        """The sites (n, dim), m, of a level that a part of the layout has anywhere, by chunks."""
+        if level:
+            found = self.held(level, number, math.inf, bounds(self.layout.parts[number].shape))
+            if found is not None:
+                yield found
+            return
+        lattice = self.layout.lattice
+        for begin, end in lattice.chunks():
+            held = self.layout.materials(begin, end) == number
+            grid = lattice.grid(begin, end)
+            yield np.stack([np.broadcast_to(a, held.shape)[held] for a in grid], axis=1)
 
     def kernel(self, level: int):
         """The smoothing kernel of a level."""
         space = self.layout.case.space
         smooths = kernel(space.kernel, self.smoothing_length(level), space.dimensions)
         return normalised(smooths, self.spacing(level), space.dimensions) if space.normalised else smooths
+
+    def _near_box(self, points: np.ndarray, lower: Corner, upper: Corner) -> np.ndarray:
+        """Which points are within a spacing of a box; along an axis that repeats all are."""
+        found, dx = np.ones(len(points), bool), self.layout.spacing
+        for x, low, up, period in zip(points.T, lower, upper, self.layout.periods):
+            if period is None:
+                found &= (x > low - dx) & (x < up + dx)
+        return found
 
     def _refined(self, level: int) -> list:
         return [one for one in self.layout.case.space.refine if one.levels >= level]

@@ -11,8 +11,9 @@ from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN, RADIANS
 from psph.physics.motion import goes_free, is_rigid, moments
 from psph.physics.rigid.motion import MotionPart, Rigid
-from psph.scene.moving import MOMENTS, Sweep, frame_sweep, moved_on, moving_parts, taken_back
+from psph.scene.moving import frame_sweep, moved_on, moving_parts, taken_back
 from psph.scene.scene import Scene
+from psph.scene.sweeps import MOMENTS, Sweep
 
 FARTHEST = 2e9
 """Spacings from 0 at most: farther out a coordinate does not tell a small part of one."""

@@ -2,46 +2,15 @@
 
 import math
 from collections.abc import Iterator
-from functools import cache
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 
-from psph.physics.motion import is_rigid, moments, told_of
+from psph.physics.motion import is_rigid, told_of
 from psph.physics.rigid.pose import PLACE, maps
 from psph.scene.census import Census
 from psph.scene.layout import Layout
-
-MOMENTS = 1000
-"""Times of a run at which a motion is looked at."""
-
-
-class Sweep(NamedTuple):
-    """What a motion does until the end of a run, as far as can be seen at some moments.
-
-    ``lower``, ``upper`` of the box that it sweeps, the longest ``way`` of a point from where it was, m; the
-    largest ``speed``, m/s, and ``acceleration``, m/s²; the largest ``jump`` of a velocity at the start, m/s.
-    """
-
-    lower: np.ndarray
-    upper: np.ndarray
-    way: float
-    speed: float
-    acceleration: float
-    jump: float
-
-
-@cache
-def sweep(motion, lower: tuple[float, ...], upper: tuple[float, ...], end: float) -> Sweep:
-    """Of all points in a box that move by ``motion``."""
-    corners = list(product(*zip(lower, upper)))
-    found = np.stack([maps(motion.pose(t), len(lower)) for t in moments(end, MOMENTS)])
-    points = np.array(corners)
-    x, v, a = (found[:, which, :, :1] + found[:, which, :, 1:] @ points.T for which in range(3))
-    longest = (float(np.sqrt((z**2).sum(axis=1)).max()) for z in (x - points.T, v, a, v[:1]))
-    way, speed, acceleration, jump = longest
-    return Sweep(x.min(axis=(0, 2)), x.max(axis=(0, 2)), way, speed, acceleration, jump)
+from psph.scene.sweeps import Sweep, sweep
 
 
 def moving_parts(census: Census) -> Iterator[tuple[int, str, Sweep]]:
@@ -49,7 +18,7 @@ def moving_parts(census: Census) -> Iterator[tuple[int, str, Sweep]]:
     it does."""
     for number, one in enumerate(census.motions):
         told = told_of(one)
-        if is_rigid(told):
+        if is_rigid(told) and census.layout.parts[number].drawn:
             low, high = (tuple(end.tolist()) for end in _box(census, number))
             yield number, census.layout.parts[number].key, sweep(told, low, high, census.layout.case.time.end)
 

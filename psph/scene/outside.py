@@ -26,7 +26,8 @@ class WallRegion:
         self.scene, self.layout, self.lattice = scene, scene.layout, scene.layout.lattice
         self._still = np.zeros(NONE + 1, bool)
         for number, own in enumerate(scene.census.motions):
-            self._still[number] = own == motion and type(own) is type(motion)
+            drawn = scene.layout.parts[number].drawn  # others stand in the same place once more
+            self._still[number] = drawn and own == motion and type(own) is type(motion)
 
     @property
     def groups(self) -> tuple[int, ...]:

@@ -10,6 +10,7 @@ from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.pose import in_space
 from psph.scene.lattice import lattice_around
 from psph.scene.layout import Layout
+from psph.scene.levels import Levels
 from psph.scene.mirrors import clipped
 from psph.scene.parts import Part
 from psph.scene.shapes import bounds, inside
@@ -39,14 +40,14 @@ class Volume(NamedTuple):
 
 
 def volume_of(layout: Layout, material: int) -> Volume:
-    """What the sites of a material fill, a cell of the lattice each."""
-    d, dx, count = layout.dimensions, layout.spacing, 0
+    """What the sites of a material fill, a cell of the lattice each; of a finer one in a finer region."""
+    d, levels, count = layout.dimensions, Levels(layout), 0
     middle = np.array(layout.lattice.lower)  # sums are taken about a point near by
     first, second = np.zeros(d), np.zeros((d, d))
-    for begin, end in layout.lattice.chunks():
-        held = layout.materials(begin, end) == material
-        grid = layout.lattice.grid(begin, end)
-        x = np.stack([np.broadcast_to(a, held.shape)[held] for a in grid], axis=1) - middle
+    level = levels.around(material)
+    dx = levels.spacing(level)
+    for found in levels.filled(level, material):
+        x = found - middle
         count, first, second = count + len(x), first + x.sum(axis=0), second + x.T @ x
     if not count:
         return Volume(0.0, np.full(3, np.nan), np.full((3, 3), np.nan))

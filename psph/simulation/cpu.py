@@ -26,7 +26,6 @@ from psph.simulation.integrator import (
     settle_given_pressure,
     state_of,
 )
-from psph.simulation.level_loops import loops_of_levels
 from psph.simulation.midway import drift_to_end, kick_to_middle
 from psph.simulation.neighbourhood import Neighbourhood
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
@@ -314,7 +313,8 @@ class Engine:
         loops = [*self._loops_of(one)]
         for loop, args in loops:
             in_threads(loop, first, last, *args)
-        if one.gives_rates and not one.midway and self.plan.materials.loaded is not None:
+        loaded = self.plan.materials.loaded is not None and not self.plan.finer
+        if one.gives_rates and not one.midway and loaded:
             for columns, lists in self.neighbourhood.dry_beside_fluid(first, last):
                 self._load_dry(one, *loops[0], columns, lists)
 
@@ -356,8 +356,9 @@ class Engine:
         held = [s[name] if last and own and name in s else None for name, own in zip(HELD, one.gives)] or NONE
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)), *held)
         rest = None
-        if plan.finer:
-            yield from loops_of_levels(plan, one, self._sums[one.place], s.group, seen, sums)
+        parted = (kind.loops(one, self._sums[one.place], seen, sums) for kind in self.kinds)
+        if own := next(filter(None, parted), None):
+            yield from own
             return
         if one.gives_rates and not one.midway and plan.materials.loaded is not None:
             rest = Unloaded(plan.materials.loaded, s.group)

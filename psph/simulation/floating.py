@@ -5,8 +5,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from psph.engine.settled import settled
+from psph.fields import WALL
 from psph.parallel.reductions import whole_sums
-from psph.physics.motion import ANCHOR
+from psph.physics.motion import ANCHOR, carried_by
 from psph.physics.rigid.bodies import Bodies, crossing
 from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.joints import Joints
@@ -49,8 +50,8 @@ class FloatingBodies(Work):
         self.joints = Joints(joined, self.bodies) if joined else None
         self.body_of = np.full(len(plan.materials.species), -1)
         for group, one in enumerate(scene.species):
-            if isinstance(one.motion, RigidBody):
-                self.body_of[group] = own.index(one.motion)
+            if one.kind == WALL and isinstance(carried := carried_by(one.motion), RigidBody):
+                self.body_of[group] = own.index(carried)
         pressure = max(one.density for one in scene.species) * scene.sound_speed**2
         pressure = max(pressure, *(one.wave_modulus for one in scene.species))
         count = int(scene.census.sizes[list(scene.layout.parts.bodies)].sum())

@@ -32,14 +32,12 @@ ORDER = 2
 
 
 class Leaders(NamedTuple):
-    """Who is seen: rows of the ``own`` level and of ``others``, of the particles from column ``low`` on; who
-    ``leads`` (columns,), the smoothing ``length`` of each, m, and its ``position``, m, where it was listed
-    (columns,)."""
+    """Who is seen: rows of the ``own`` level and of ``others``, of the particles from column ``low`` on; the
+    smoothing ``length`` of each, m, and its ``position``, m, where it was listed (columns,)."""
 
     low: int
     own: Any
     others: Any
-    leads: np.ndarray
     length: np.ndarray
     position: Any
 
@@ -56,7 +54,7 @@ class Weighed(NamedTuple):
 
 class Followed(NamedTuple):
     """Whom each of some particles follows: from ``begin`` (n,) on ``many`` (n,) entries, the ``column`` and
-    the ``share`` c of each; none is kept where ``begin`` is empty.  ``longest`` is the longest row."""
+    the ``share`` c of each.  ``longest`` is the longest row."""
 
     begin: np.ndarray
     many: np.ndarray
@@ -100,14 +98,11 @@ def follow(first, last, columns, scale, leaders, weighing, anew, followed, state
 
     With ``anew`` whom they follow is found first.  Whoever has too few falls, by ``fall`` (dim,) m/s.
     """
-    kept = len(followed.begin) > 0
     column, share = followed.column, followed.share
-    if not kept:
-        column, share = np.empty(followed.longest, np.uint32), np.empty(followed.longest)
     room = room_for(len(leaders.position), weighing.order, followed.longest)
     for n in range(first, last):
         k = np.uint64(columns[n])
-        begin = followed.begin[n] if kept else 0
+        begin = followed.begin[n]
         if anew:
             followed.many[n] = find(k, scale[n], leaders, weighing, room, column[begin:], share[begin:])
         many = followed.many[n]
@@ -150,8 +145,6 @@ def take_row(k, scale, leaders, lists, weighing, room, column, share, many):
     while entry < last:
         j = np.uint64(lists.lists[entry])
         entry += np.uint64(1)
-        if not leaders.leads[j]:
-            continue
         x_jk = nearest_image(subtract(at(leaders.position, j), at(leaders.position, k)), weighing.periods)
         w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / leaders.length[j])
         if w > 0.0:

@@ -5,20 +5,72 @@ from typing import Any
 
 import numpy as np
 
-from psph.composition.loads import Unloaded
+from psph.composition.loads import Couple, Loads, Unloaded
+from psph.engine.settled import settled
 from psph.fields import with_length
-from psph.simulation.pairs import Summed
+from psph.physics.motion import COUPLE, LOAD
+from psph.simulation.pairs import Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 
+PARTS = LEADING, NEAR, FAR = range(3)
+"""What a particle is to the passes: it has all sums, as who leads and walls have; it follows beside who leads
+and has its own sums alone; it follows farther off, or is a wall there that has no pressure but by a sum, and
+has those now and then."""
 
-def loops_of_levels(
-    plan, one: Pass, loop, group: np.ndarray, seen: tuple, sums
-) -> Iterator[tuple[Any, tuple]]:
-    """The compiled ``loop`` of the pass ``one`` of a ``plan`` for each level of sizes, over its own particles
-    by their ``group`` (columns,), with what it takes beside columns: what is ``seen``, where ``sums`` go."""
-    metric, view, around = seen
-    for level, others in zip((plan, *plan.finer), plan.materials.others):
-        own, h = level.passes[one.place], level.smoothing_length
-        summed = Summed(own.effects, own.reductions, Unloaded(others, group))
+
+class LevelLoops:
+    """The passes of a ``plan`` over the particles of a ``store`` that are of several levels.
+
+    Nobody who follows needs a force.  ``role`` (columns,) has len(PARTS) · level + part of each column;
+    ``pushing`` are rows of the leading fluid before walls and bodies whose load is asked for, each on its own
+    level: what the fluid does is told once, wherever levels are there twice.
+    """
+
+    def __init__(self, plan, store):
+        self.plan, self.store = plan, store
+        self.role = np.zeros(0, np.uint8)
+        self.pushing: Any = None
+        self._levels = (plan, *plan.finer)
+        self._following = [settled(sum_over_neighbours) for _ in plan.passes]
+        self._pushes = settled(sum_over_neighbours)
+        loaded = plan.materials.loaded
+        self._loaded = () if loaded is None else [loaded & ~others for others in plan.materials.others]
+
+    def of(self, one: Pass, loop, seen: tuple, sums, far: bool) -> Iterator[tuple[Any, tuple]]:
+        """The compiled ``loop`` of the pass ``one`` for each level, and those of who follows and of loads,
+        with what each takes beside columns: what is ``seen``, where ``sums`` go; of those ``far`` off too."""
+        follows = {NEAR, FAR} if far else {NEAR}
+        for level in range(len(self._levels)):
+            own, told = self._seen(level, one, seen)
+            if not one.gives_rates:
+                yield loop, (Summed((), own.reductions, self._but(level, {LEADING} | follows)), *told, sums)
+                continue
+            yield loop, (Summed(own.effects, own.reductions, self._but(level, {LEADING})), *told, sums)
+            if own.reductions:
+                alone = Summed((), own.reductions, self._but(level, follows))
+                yield self._following[one.place], (alone, *told, Sums(None, None, sums.written))
+        if one.gives_rates and self.pushing is not None:
+            yield from self._loads(one, seen)
+
+    def _seen(self, level: int, one: Pass, seen: tuple) -> tuple[Pass, tuple]:
+        """The pass with the numbers of a ``level``, and what is ``seen`` with its smoothing length."""
+        plan, (metric, view, around) = self._levels[level], seen
+        h = plan.smoothing_length
         shown = around._replace(shown=with_length(around.shown, h))
-        yield loop, (summed, metric._replace(kernel=level.kernel), with_length(view, h), shown, sums)
+        return plan.passes[one.place], (metric._replace(kernel=plan.kernel), with_length(view, h), shown)
+
+    def _but(self, level: int, parts: set[int]) -> Unloaded:
+        """A pass over some ``parts`` of a ``level`` alone."""
+        others = np.ones(len(PARTS) * len(self._levels), bool)
+        others[[len(PARTS) * level + part for part in parts]] = False
+        return Unloaded(others, self.role)
+
+    def _loads(self, one: Pass, seen: tuple) -> Iterator[tuple[Any, tuple]]:
+        """The push of the leading fluid on each level."""
+        s = self.store
+        for level, loaded in enumerate(self._loaded):
+            own, (metric, view, around) = self._seen(level, one, seen)
+            couples = ((Couple(own.effects),), (s[COUPLE.name],)) if COUPLE.name in s else ((), ())
+            summed = Summed(own.effects, couples[0], Loads(loaded, s.group))
+            told = metric, view, around._replace(lists=self.pushing)
+            yield self._pushes, (summed, *told, Sums(s[LOAD.name], None, couples[1]))

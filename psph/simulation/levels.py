@@ -11,10 +11,11 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import seen_at, view_of
 from psph.parallel.reductions import all_rows, whole_sums
-from psph.particles.level_lists import Membership, part_levels
+from psph.particles.level_lists import Membership, find_beside, keep_level, rows_of_leaders
 from psph.particles.neighbours import empty
-from psph.scene.levels import REACHES, Levels
+from psph.scene.levels import Levels
 from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
+from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, LevelLoops
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
 from psph.work import Rank, Work
@@ -31,14 +32,27 @@ LASTS = 0.5
 """Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
 more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
 
-SELDOM = 8
-"""Steps for which the velocity serves of those who follow deep in a finer region."""
+SELDOM = 4
+"""Steps for which the state and the sums serve of those who follow where nobody sees them who leads."""
 
-HELD_STILL = ("acceleration", "density_rate")
-"""What forces give to those who follow, and they do not take."""
+OF_FORCES = ("acceleration", "density_rate", "density_rate_1", "density_rate_2")
+"""What forces give, and those who follow do not have: no pass has sums of it for them."""
 
 BORN, DIED, GONE, COME = range(4)
 """What is counted of each level: who is born and dies, who begins to follow and who to lead."""
+
+
+class Side:
+    """``some`` of those who follow, beside whoever leads or farther off, whom they have ``followed`` since
+    lists were made, and that they do in each ``every``-th step."""
+
+    def __init__(self, some: slice, followed: Followed, every: int):
+        self.some, self.followed, self.every, self._begun = some, followed, every, False
+
+    def begin(self) -> bool:
+        """Whether that is still to be found; it is from now on."""
+        anew, self._begun = not self._begun, True
+        return anew
 
 
 class Resizing(Work):
@@ -76,8 +90,11 @@ class Resizing(Work):
         self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER)
         self._follow, self._go = settled(follow), settled(go_along)
         self._lanes = rank.plan.space.lanes
-        self._led = empty(0, 0)
         self.columns = np.zeros(0, np.int64)
+        self._loops = LevelLoops(self.plan, self.store)
+        self._loaded, self._all = self.plan.materials.loaded, True
+        if self._loaded is not None:
+            self._loops.pushing = empty(0, 0)
 
     # Who is there.
 
@@ -143,44 +160,51 @@ class Resizing(Work):
         return ids, group, block
 
     def listed(self) -> None:
-        """Pairs of one level stay in the lists; who follows has rows of those who lead on other levels."""
+        """Pairs of one level stay in the lists; who follows has rows of those who lead on other levels, and
+        what bears a load of those on its own."""
         group = self.domain.groups()
         fluid, level = self.fluid_of[group], self.level_of[group]
         follows, leads = self.follows[group], fluid & ~self.follows[group]
-        store = self.store
-        reach2 = self.plan.sizes.reach(store[LENGTH][: store.total]) ** 2
-        listed, periods = tuple(store["listed_position"]), self._weighing.periods
-        of = Membership(level, follows, leads, listed, reach2, periods)
-        self._led = part_levels(self.domain.lists, store.low, store.owned, of, self._lanes)
-        own, deep, finer = self._followers(np.flatnonzero(follows[store.inner]))
-        self.columns, near = store.low + own, np.count_nonzero(~deep)
-        self._leaders = Leaders(store.low, self.domain.lists, self._led, leads, store[LENGTH], listed)
-        self._scale = self.levels.layout.spacing * 0.5 ** np.where(
-            finer, level[self.columns] + 1, level[self.columns] - 1.0
-        )
-        seen = self.domain.lists.lengths[own].astype(np.int64) + self._led.lengths[own]
-        longest, ends = int(seen.max(initial=0)), np.cumsum(seen[:near])
-        size, many = int(ends[-1]) if near else 0, np.zeros(len(own), np.int64)
-        self._near = Followed(
-            ends - seen[:near], many[:near], np.empty(size, np.uint32), np.empty(size), longest
-        )
-        none = np.zeros(0, np.int64)
-        self._deep = Followed(none, many[near:], np.empty(0, np.uint32), np.empty(0), longest)
-        self._anew = True
+        store, lists = self.store, self.domain.lists
+        listed, of = tuple(store["listed_position"]), Membership(level, leads)
+        rows = lists, store.low, store.owned, of
+        others = rows_of_leaders(*rows, follows, False, 1)
+        keep_level(store.owned, store.low, lists, level)
+        if self._loaded is not None:
+            self._loops.pushing = rows_of_leaders(*rows, self._loaded[group], True, self._lanes)
+        alike = rows_of_leaders(*rows, follows, True, 1)
+        beside, inner = np.zeros(store.owned, bool), group[store.inner]
+        find_beside(store.owned, store.low, lists, leads, beside)
+        following, told = self.follows[inner], self.plan.materials.given_pressure[inner]
+        part = np.where(following & beside, NEAR, np.where((following | told) & ~beside, FAR, LEADING))
+        self._loops.role = (len(PARTS) * level).astype(np.uint8)
+        self._loops.role[store.inner] += part.astype(np.uint8)
+        own = np.concatenate([np.flatnonzero(following & (beside == one)) for one in (True, False)])
+        self.columns, near = store.low + own, np.count_nonzero(following & beside)
+        for row in (row for name in OF_FORCES for row in store.rows[name]):
+            store.data[row, self.columns] = 0.0
+        self._leaders = Leaders(store.low, alike, others, store[LENGTH], listed)
+        self._scale = self.levels.layout.spacing * 0.5 ** self._followed(own, level[self.columns])
+        seen = alike.lengths[own].astype(np.int64) + others.lengths[own]
+        ends, many = np.cumsum(seen), np.zeros(len(own), np.int64)
+        size = int(ends[-1]) if len(own) else 0
+        entries = np.empty(size, np.uint32), np.empty(size), int(seen.max(initial=0))
+        self._sides = [
+            Side(some, Followed((ends - seen)[some], many[some], *entries), every)
+            for some, every in ((slice(0, near), 1), (slice(near, None), SELDOM))
+        ]
 
-    def _followers(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Some rows, those last that are deep in a finer region, where nobody sees them who leads; whether
-        each is deep, and whether it is in a finer region at all."""
-        places = self.domain.inside(self.store.owned_rows("position")[own])
-        level = self.level_of[self.store.group[self.store.inner][own]]
-        away = np.full(len(own), np.inf)
-        for one in range(self.levels.count - 1):
-            at_level = level == one
-            away[at_level] = self.levels.outside(one + 1, places[at_level])
-        far = np.array([REACHES * self.levels.support(one) for one in range(self.levels.count)])
-        deep = away < -far[level] - self.levels.support(0) * 0.5
-        order = np.argsort(deep, kind="stable")
-        return own[order], deep[order], away[order] < 0.0
+    def _followed(self, own: np.ndarray, level: np.ndarray) -> np.ndarray:
+        """The level of those whom some rows of a ``level`` (n,) follow: the next finer one in its region."""
+        found, finest = level - 1.0, self.levels.count - 1
+        for one in range(finest):
+            at_level = np.flatnonzero(level == one)
+            listed = (x[self.store.inner][own[at_level]] for x in self.store["listed_position"])
+            if one:
+                away = self.levels.outside(one + 1, self.domain.inside(np.stack([*listed], axis=1)))
+                at_level = at_level[away < 0.0]
+            found[at_level] += 2.0
+        return found
 
     # What they are like.
 
@@ -198,27 +222,23 @@ class Resizing(Work):
                 self.domain.halo.refresh(self.plan.refreshed)
             simulation.listed = False  # ghosts are fresh, but for what follows
         with self.ledger("refine"):
-            near, fall = len(self._near.many), simulation.dt * self.gravity
-            self._impose(slice(0, near), self._near, self._anew, fall)
-            self._anew = False
-            if simulation.steps % SELDOM == 0:
-                self._impose(slice(near, None), self._deep, True, fall)
+            self._all = simulation.steps % SELDOM == 0
+            for side in self._sides:
+                if simulation.steps % side.every == 0:
+                    self._impose(side, side.every * simulation.dt * self.gravity)
 
-    def _impose(self, some: slice, followed: Followed, anew: bool, fall: np.ndarray) -> None:
-        """The state of ``some`` of them, by those whom they have ``followed`` since lists were made, or
-        ``anew``."""
+    def _impose(self, side: Side, fall: np.ndarray) -> None:
+        """The state of some, by those whom they have followed since lists were made, or whom they find; who
+        has too few gets ``fall`` (dim,) m/s."""
         names = "velocity", "predicted_velocity", "specific_volume", "pressure", "density"
         state = OfLeaders(*(self.store[name] for name in names))
-        columns, scale = self.columns[some], self._scale[some]
-        told = columns, scale, self._leaders, self._weighing, anew, followed, state, fall
+        columns, scale = self.columns[side.some], self._scale[side.some]
+        told = columns, scale, self._leaders, self._weighing, side.begin(), side.followed, state, fall
         in_threads(self._follow, 0, len(columns), *told)
 
-    def after_sums(self, time: float, dt: float) -> None:
-        """Forces do not act on who follows."""
-        store = self.store
-        for name in HELD_STILL:
-            for row in store.rows[name]:
-                store.data[row, self.columns] = 0.0
+    def loops(self, one, loop, seen: tuple, sums) -> Iterator[tuple]:
+        """A pass level by level."""
+        return self._loops.of(one, loop, seen, sums, self._all)
 
     # What is kept and told.
 

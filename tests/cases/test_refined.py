@@ -310,7 +310,6 @@ def test_regions_that_cannot_be(key, says, tmp_path):
     "key, says",
     [
         ("space.refine=[{shape={box={lower=[0,0],upper=[1,1]}},factor=3}]", "3 is not known"),
-        ('gauges.push.force.on=["tank"]', "forces on walls of several sizes are not summed"),
         ("fluids.water.surface_tension=0.07", "it has not been tried where sizes meet"),
         ('precision="mixed"', "levels of sizes are in double precision"),
         ("fluids.water.jitter=0.1", "finer particles start on a lattice"),

@@ -68,7 +68,7 @@ def count_candidates(grids):
             level += 1
         first, last = grids.starts[cell], grids.starts[cell + 1]
         low, high, reach = levels.extent(grids, first, last)
-        ranges, many, _ = levels.candidates(grids, low, high, reach, ranges)
+        ranges, many, _ = levels.candidates(grids, low, high, reach, (0, len(grids.reach)), ranges)
         for r in range(many):
             count += (last - first) * (ranges[r, 1] - ranges[r, 0])
     return count

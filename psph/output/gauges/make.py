@@ -96,9 +96,11 @@ def gauge_of(scene, name: str, table):
 
 
 def _corners(scene) -> Corners:
-    """Where parts meet on which forces are measured."""
+    """Where parts meet on which forces are measured; nowhere beside particles of several sizes, where each
+    part has what its own particles bear."""
     names = {name for gauge in scene.case.gauges.values() if gauge.force for name in gauge.force.on}
     gauged = [group for group, one in enumerate(scene.species) if one.name in names]
+    gauged = [] if scene.finer else gauged
     kernel, spacing = scene.kernel, scene.spacing
     crossing = seam_shares(kernel, spacing, scene.dimensions)
     return Corners(gauged, spacing, kernel.support / kernel.inverse_h, crossing)
@@ -128,8 +130,10 @@ def _of(scene, asked) -> tuple[int, ...]:
 
 
 def _groups(scene, name: str) -> Iterator[int]:
-    """The groups of what has a name; of what keeps its neighbours the clamped parts among them."""
+    """The groups of what has a name; of what keeps its neighbours the clamped parts among them, and of a wall
+    or a body those of other sizes."""
     parts = scene.layout.parts
     for part in parts:
-        if name == part.name or parts[part.whole].keeps_neighbours and name == parts[part.whole].name:
+        whole = parts[part.whole]
+        if name in (part.name, parts[part.origin].name) or whole.keeps_neighbours and name == whole.name:
             yield part.number

@@ -64,3 +64,27 @@ class RigidBody(NamedTuple):
         if any(slides and g for slides, g in zip(self.slides, gravity)):
             return lowest - spacing, lowest
         return (highest, lowest) if self.pivot is not None and any(self.turns) else None
+
+
+class Borne(NamedTuple):
+    """Particles that go with a rigid body of this ``name``, as another part of it; its :class:`RigidBody` is
+    known once its sites are."""
+
+    name: str
+    carrier: Any = None
+
+    kind = WALL
+
+    def pose(self, time: float) -> Pose:
+        """Where what is not free of the body has it at ``time``, s."""
+        return self.carrier.pose(time)
+
+    @property
+    def motion(self):
+        """That of the body which the case tells."""
+        return self.carrier.motion
+
+    @property
+    def goes_free(self) -> bool:
+        """As the body."""
+        return self.carrier.goes_free

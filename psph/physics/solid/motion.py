@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 from psph.fields import SOLID
+from psph.physics.rigid.body import Borne
 
 
 class Elastic(NamedTuple):
@@ -26,28 +27,12 @@ class Clamped(NamedTuple):
     kind = SOLID
 
 
-class Riding(NamedTuple):
-    """Particles of a solid that go with a rigid body of this ``name``, which bears what pulls on them; its
-    :class:`psph.physics.rigid.body.RigidBody` is known once its sites are."""
+class Riding(Borne):
+    """Particles of a solid that go with a rigid body, which bears what pulls on them."""
 
-    name: str
-    carrier: Any = None
+    __slots__ = ()
 
     kind = SOLID
-
-    def pose(self, time: float):
-        """Where what is not free of the body has it at ``time``, s."""
-        return self.carrier.pose(time)
-
-    @property
-    def motion(self):
-        """That of the body which the case tells."""
-        return self.carrier.motion
-
-    @property
-    def goes_free(self) -> bool:
-        """As the body."""
-        return self.carrier.goes_free
 
 
 class MovingClamp(NamedTuple):

@@ -1,5 +1,6 @@
-"""Fluids and walls of a finer spacing as parts of a scene, and what follows another spacing."""
+"""Fluids, walls and bodies of a finer spacing as parts of a scene, and what follows another spacing."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 from psph.scene.levels import Levels
 from psph.scene.parts.part import Known, Part
 from psph.scene.parts.rigid import RigidPart
+from psph.scene.sweeps import farthest_way
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,6 @@ class LevelWall(RigidPart):
 
     level: int = 0
     origin: int = 0
-    """The number of the wall."""
 
     may_be_empty = True
     drawn = False
@@ -61,10 +62,25 @@ class LevelWall(RigidPart):
         """That of a wall, and its level."""
         return super().own(known) | {"level": self.level}
 
+    def way(self, end: float) -> float:
+        """How far it goes until the ``end``, s, at the most, m."""
+        return farthest_way(self.motion, self.room, end)
+
     claimed = LevelPart.claimed
     particle_mass = LevelPart.particle_mass
 
     def places(self, layout) -> np.ndarray | None:
-        """The sites of its level that its wall has, as far as its fluid sees it, m."""
-        levels = Levels(layout)
-        return levels.held(self.level, self.origin, levels.support(self.level - 1))
+        """The sites of its level that its wall has, as far as its fluid may come to see it, m."""
+        levels, way = Levels(layout), self.way(layout.case.time.end)
+        return levels.held(self.level, self.origin, levels.support(self.level - 1) + way, self.room)
+
+
+@dataclass(frozen=True)
+class LevelBody(LevelWall):
+    """The same of a rigid body: all of it, wherever it may come."""
+
+    looks = "rigid body"
+
+    def way(self, end: float) -> float:
+        """Any."""
+        return math.inf

@@ -13,12 +13,13 @@ from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
 from psph.physics.gas.state import Gaseous
 from psph.physics.motion import Buffered, Fixed, Free, Led
+from psph.physics.rigid.body import Borne
 from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp, Riding
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.parts.end import Behind, EndPart, behind
 from psph.scene.parts.fluid import FluidPart
 from psph.scene.parts.gas import gas_part
-from psph.scene.parts.level import LevelPart, LevelWall
+from psph.scene.parts.level import LevelBody, LevelPart, LevelWall
 from psph.scene.parts.part import Part
 from psph.scene.parts.rigid import BodyPart, WallPart
 from psph.scene.parts.soil import SoilPart
@@ -152,6 +153,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     for number, (name, body) in enumerate(case.bodies.items(), FIRST_BODY):
         solid = WALL if referred else number
         add(BodyPart, name, f"bodies.{name}", body, None, source=continued(body), solid=solid)
+        walls.append(found[-1])
     placed = tuple(found)
     for name, end in case.ends.items():
         shape = behind(case, end, placed)
@@ -163,7 +165,9 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     for level in range(1 + finest if finest else 0):
         for part in walls if level else ():
             more = {"source": part.source, "level": level, "origin": part.number}
-            add(LevelWall, f"{part.name} (level {level})", part.key, part.table, part.motion, **more)
+            more |= {"solid": part.solid, "loaded": part.loaded}
+            kind, told = (LevelBody, Borne(part.name)) if part.moves_whole else (LevelWall, part.motion)
+            add(kind, f"{part.name} (level {level})", part.key, part.table, told, **more)
         for part in fluids:
             more = _of_level(part, level) | {"follows": True}
             add(LevelPart, f"{part.name} (level {level}, follows)", part.key, part.table, Led(), **more)

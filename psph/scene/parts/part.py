@@ -85,6 +85,11 @@ class Part:
     """As what it is shown."""
 
     @property
+    def origin(self) -> int:
+        """The number of the part that it is with particles of another size, else its own."""
+        return self.number
+
+    @property
     def of_another(self) -> bool:
         """Whether it is clamped, and so a part of another."""
         return self.whole != self.number

@@ -1,0 +1,199 @@
+"""Walls that move and rigid bodies beside particles of several sizes: loads, momentum, bits on ranks."""
+
+import numpy as np
+import pytest
+from cases.test_refined import leading
+from drafts import draft, refusal
+from gauging import start
+from mpi4py import MPI
+from parallel.test_simulation import state
+from runs.resuming import go_on_alike, keep, steps, taken_up
+
+from psph.case import load
+from psph.output.gauges import gauges_of
+from psph.runs.setup import compile_ahead
+from psph.scene import Scene
+from psph.simulation import levels
+from psph.simulation.plan import make_plan
+
+BOX = """
+time.end = 0.4
+[space]
+dimensions = 2
+spacing = 0.04
+refine = [{ shape.box = { lower = [LOWER, 0.0], upper = [1.6, 0.8] } }]
+[physics]
+gravity = [0.0, -9.81]
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.6, 0.64] }
+shape.difference.minus = [{ box = { lower = [0.64, 0.32], upper = [0.96, 0.64] } }]
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.16, -0.16], upper = [1.76, 0.96] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.6, 0.96] } }]
+[walls.block]
+shape.box = { lower = [0.64, 0.32], upper = [0.96, 0.8] }
+[gauges.push.force]
+on = ["block"]
+about = [0.8, 0.32]
+"""
+"""Still water that lifts a block by 0.32 m of its own depth and width."""
+
+CARRIED = """
+time.end = 1.0
+physics.sound_speed = 20.0
+[space]
+dimensions = 2
+spacing = 0.02
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.2, 0.6]
+[[space.refine]]
+shape.box = { lower = [0.6, 0.0], upper = [1.2, 0.6] }
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.2, 0.6] }
+shape.difference.minus = [{ box = { lower = [0.32, 0.24], upper = [0.44, 0.36] } }]
+velocity = [2.0, 0.0]
+[bodies.box]
+shape.box = { lower = [0.32, 0.24], upper = [0.44, 0.36] }
+density = 1200.0
+velocity = [2.0, 0.0]
+spin = SPIN
+"""
+"""A box in a stream that takes it through a border."""
+
+DRIVEN = """
+time.end = 1.0
+[space]
+dimensions = 2
+spacing = 0.04
+[[space.refine]]
+shape.box = { lower = [0.4, 0.0], upper = [1.2, 0.6] }
+[physics]
+gravity = [0.0, -9.81]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.2, 0.4] }
+pressure = "hydrostatic"
+[walls.tank]
+shape.union = [
+    { box = { lower = [-0.6, -0.16], upper = [1.36, 0.0] } },
+    { box = { lower = [1.2, 0.0], upper = [1.36, 0.6] } },
+]
+[walls.paddle]
+shape.box = { lower = [-0.16, 0.0], upper = [0.0, 0.6] }
+motion.sinusoid = { amplitude = [0.2, 0.0], frequency = 0.8 }
+[bodies.float]
+shape.box = { lower = [0.48, 0.2], upper = [0.8, 0.4] }
+density = 700.0
+[gauges.push.force]
+on = ["paddle"]
+"""
+"""A paddle that comes near a border, and a box that floats across it."""
+
+
+def lift(folder, lower):
+    """The mean force on the block over its buoyancy, and the moment over that and its width."""
+    simulation = start(draft(folder, BOX.replace("LOWER", f"{lower:g}")))
+    gauge, found = next(iter(gauges_of(Scene(simulation_case(folder))).values())), []
+    while simulation.time < 0.4:
+        simulation.step(0.4)
+        if simulation.time > 0.2:
+            found.append(gauge.row(simulation))
+    force_x, force_y, moment = np.mean(found, axis=0) / (1000.0 * 9.81 * 0.32 * 0.32)
+    return force_x, force_y, moment / 0.32
+
+
+def simulation_case(folder):
+    """The case that :func:`draft` has written there."""
+    return load(folder / "case.toml")
+
+
+@pytest.mark.parametrize("lower", [0.8, 0.0, 1.2])
+def test_water_lifts_a_block_by_its_weight_across_a_border(lower, tmp_path):
+    """Across it, in finer and in coarse water alone."""
+    force_x, force_y, moment = lift(tmp_path, lower)
+    assert abs(force_y - 1.0) < 0.04
+    assert abs(force_x) < 0.02 and abs(moment) < 0.02
+
+
+def test_a_load_that_counts_who_follows_lifts_twice(tmp_path, monkeypatch):
+    """The control: levels that are there twice would push twice."""
+    made = levels.rows_of_leaders
+
+    def everyone(lists, low, owned, of, asked, same, lanes):
+        return made(lists, low, owned, of._replace(leads=of.leads | same), asked, same, lanes)
+
+    monkeypatch.setattr(levels, "rows_of_leaders", everyone)
+    assert lift(tmp_path, 0.8)[1] > 1.3
+
+
+@pytest.mark.parametrize("spin", [0.0, 4.0])
+def test_a_box_goes_through_a_border_with_its_stream(spin, tmp_path):
+    simulation = start(draft(tmp_path, CARRIED.replace("SPIN", f"{spin:g}")))
+    bodies, box = simulation.engine.of("bodies").bodies, 1200.0 * 0.12**2
+    while simulation.time < 0.3:
+        simulation.step(0.3)
+    _, v, _, m, _ = leading(simulation)
+    assert abs(bodies.velocity[0, 0] - 2.0) < 0.01
+    assert abs(bodies.velocity[0, 1]) < 0.01 + 0.01 * spin
+    whole = (m[:, None] * v).sum(axis=0) + box * bodies.velocity[0, :2]
+    assert whole[0] == pytest.approx(2.0 * (m.sum() + box), rel=2e-3)
+
+
+def together(folder):
+    """The paddle and the float, as all ranks read them."""
+    if MPI.COMM_WORLD.rank == 0:
+        draft(folder, DRIVEN)
+    MPI.COMM_WORLD.Barrier()
+    case = load(folder / "case.toml")
+    scene = Scene(case)
+    compile_ahead(scene, make_plan(scene), MPI.COMM_WORLD)
+    return case
+
+
+@pytest.mark.mpi(min_size=2)
+def test_same_bits_with_a_paddle_and_a_float(mpi_tmp_path):
+    case = together(mpi_tmp_path)
+    many, single = (steps(case, comm, 240) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    assert single.engine.of("refine").counts[1, levels.BORN] > 0
+    (rows, *_), (alone, *_) = state(many), state(single)
+    assert np.array_equal(rows, alone)
+    assert many.engine.of("bodies").state() == single.engine.of("bodies").state()
+
+
+@pytest.mark.mpi(min_size=2)
+def test_a_paddle_and_a_float_go_on_on_one_rank(mpi_tmp_path):
+    case = together(mpi_tmp_path)
+    simulation = steps(case, MPI.COMM_WORLD, 45)
+    written = keep(simulation, case, mpi_tmp_path)
+    MPI.COMM_WORLD.Barrier()
+    go_on_alike(simulation, taken_up(case, written, MPI.COMM_SELF), 80)
+
+
+def test_who_moves_is_there_on_every_level_that_it_may_touch(tmp_path):
+    scene = Scene(draft(tmp_path, DRIVEN))
+    names = [one.name for one in scene.species]
+    there = {names[number] for number in scene.layout.placed}
+    assert {"tank (level 1)", "float (level 1)", "paddle (level 1)"} <= there
+    far = Scene(
+        draft(
+            tmp_path,
+            DRIVEN.replace(
+                "lower = [0.4, 0.0], upper = [1.2, 0.6]", "lower = [0.8, 0.0], upper = [1.2, 0.6]"
+            ),
+        )
+    )
+    assert "paddle (level 1)" not in {names[number] for number in far.layout.placed}
+
+
+@pytest.mark.parametrize(
+    "key, says",
+    [
+        ('gauges.push.sensor={position=[0.65,0.2],axis="x",diameter=0.05}', "several sizes is not told"),
+        ('walls.block.condition="repulsive"', "it counts on one spacing"),
+    ],
+)
+def test_what_does_not_work_with_levels_is_refused(key, says, tmp_path):
+    text = BOX.replace("LOWER", "0.8")
+    [line] = refusal(tmp_path, text[: text.index("[gauges")], key)
+    assert says in line
