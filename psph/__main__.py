@@ -225,6 +225,11 @@ def _study(options, comm) -> None:
 
 
 def _stability(options, comm) -> None:
+    if options.case is None and options.set:
+        raise Refused("stability --set: which case? give its file, as in stability CASE.toml --set KEY=VALUE")
+    if options.case is not None:
+        _stability_of_case(options, comm)
+        return
     if options.compared:
         from psph.lab import comparisons
 
@@ -241,6 +246,20 @@ def _stability(options, comm) -> None:
 
     asked = {name: getattr(options, name) for name in Asked._fields}
     stability(comm, Asked(**asked | {"remedies": tuple(options.remedies)}))
+
+
+def _stability_of_case(options, comm) -> None:
+    """What linear theory expects of a case."""
+    if options.kernel or options.battery or options.quick or options.compared:
+        raise Refused(f"stability {options.case}: says what theory expects of that case; leave the rest out")
+    said = _load(options).explain().stability
+    if not said:
+        raise Refused(
+            f"stability {options.case}: what is in it keeps its neighbours for ever, or has no lattice: no "
+            "wave of disorder can grow; stability --solids runs elastic solids"
+        )
+    if comm.rank == 0:
+        print("\n".join(said))
 
 
 def _load(options):

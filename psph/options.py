@@ -108,6 +108,10 @@ def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
         verb[name].set_defaults(verb=action)
     for name in ("run", "explain", "check", "study"):
         verb[name].add_argument("case", type=Path, help="the case file")
+    verb["stability"].add_argument(
+        "case", type=Path, nargs="?", help="say what theory expects of this case, as explain --all does"
+    )
+    for name in ("run", "explain", "check", "study", "stability"):
         verb[name].add_argument(
             "--set",
             action="append",

@@ -8,6 +8,7 @@ from psph.runs.explain import Acting, acting, explain, laws_of, page
 from psph.runs.footprint import bytes_of_rank, slab_planes
 from psph.runs.forecast import forecast, pull
 from psph.runs.hints import hints
+from psph.runs.stability_forecast import stability_forecast
 from psph.simulation.plan import make_plan
 
 
@@ -17,8 +18,9 @@ class Explanation(NamedTuple):
     ``effects`` and ``laws`` (equations of state) each have ``name``, ``does``, ``because`` and
     ``in_force``; ``absent`` says of each other effect why it is not there. ``step_limits`` (s) are the
     bounds of the time step by their names, at the expected speed; ``steps`` and ``seconds`` a guess of
-    what the run takes; ``bytes_per_rank`` the memory of a rank. ``page`` are the lines that the command
-    line prints, ``lines`` those that it prints with ``--all``.
+    what the run takes; ``bytes_per_rank`` the memory of a rank. ``stability`` is what linear theory expects
+    of the lattice at the start, line by line. ``page`` are the lines that the command line prints,
+    ``lines`` those that it prints with ``--all``.
     """
 
     title: str
@@ -37,6 +39,7 @@ class Explanation(NamedTuple):
     steps: int
     seconds: float
     bytes_per_rank: float
+    stability: list[str]
     hints: list[str]
     page: list[str]
     lines: list[str]
@@ -67,6 +70,7 @@ def explained(scene, ranks: int) -> Explanation:
         steps=expected.steps,
         seconds=expected.seconds,
         bytes_per_rank=bytes_of_rank(scene, plan, ranks),
+        stability=list(stability_forecast(scene, plan)),
         hints=list(hints(scene, plan)),
         page=list(page(scene, ranks)),
         lines=lines,

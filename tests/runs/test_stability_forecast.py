@@ -1,12 +1,15 @@
 """What explain says of the lattice that a case starts from."""
 
 import re
+import subprocess
+import sys
 import time
 
 import numpy as np
 import pytest
 from drafts import SQUARE, TANK, draft
 from gauging import start
+from jobs import clean_environment
 from remedies import with_remedies
 
 from psph.case import load
@@ -154,6 +157,27 @@ shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
 density = 1.0
 pressure = 1.0
 """
+
+
+def stability_of(tmp_path, *options):
+    """What ``python -m psph stability`` says of that gas: its exit code, its lines, and its complaint."""
+    (tmp_path / "gas.toml").write_text(GAS)
+    command = [sys.executable, "-m", "psph", "stability", str(tmp_path / "gas.toml"), *options]
+    job = subprocess.run(command, capture_output=True, text=True, env=clean_environment(), timeout=120)
+    return job.returncode, job.stdout.splitlines(), job.stderr
+
+
+def test_the_verb_says_of_a_gas_what_explain_says(tmp_path):
+    code, lines, _ = stability_of(tmp_path, "--set", "space.smoothing=1.4")
+    case = load(tmp_path / "gas.toml", ["space.smoothing=1.4"])
+    assert code == 0 and lines == said(case)
+    assert lines[0].startswith("Stability of gases at the start") and "h/dx 1.4" in lines[-1]
+    assert lines != said(load(tmp_path / "gas.toml"))
+
+
+def test_a_case_stands_alone_in_the_verb(tmp_path):
+    code, _, complaint = stability_of(tmp_path, "--kernel", "cubic")
+    assert code == 2 and "says what theory expects of that case; leave the rest out" in complaint
 
 
 def grows(tmp_path, *sets):

@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from psph.lab.bench import BLOCK, BOX, DAM, FALLING, PROBLEMS
+from psph.lab.bench import BLOCK, BOX, DAM, FALLING, GAS, PROBLEMS
 from psph.lab.bench.compare import compared
 from psph.lab.bench.measure import AGAINST, PEER, BenchProblem, measure
 from psph.lab.bench.ranks import on_rank_0
@@ -40,6 +40,8 @@ def one(
         raise BenchError(
             "bench --problem block: solids have their own kernel; leave --neighbours and --precision out"
         )
+    if asked.problem == GAS and precision != "double":
+        raise BenchError("bench --problem gas: gases are computed in double precision; leave --precision out")
     for name in ("particles", "neighbours"):
         if getattr(asked, name) < 1:
             raise BenchError(f"bench --{name} {getattr(asked, name)}: give at least 1")
@@ -89,6 +91,8 @@ def bench(
     if turns is not None and turns < 1:
         raise BenchError(f"bench --turns {turns}: give at least 1")
     earlier = on_rank_0(comm, lambda: read_runs(compare)) if compare else None
+    if peer_python and any(problem.problem == GAS for problem in asked):
+        raise BenchError("bench --peer: there is none for gases; leave --peer or --problem gas out")
     ceiling = measure_ceiling(comm)
     runs = []
     for problem in asked:

@@ -16,7 +16,8 @@ from psph.case import checked
 from psph.composition.pair import take
 from psph.engine.jit import compiled, processor
 from psph.engine.threads import threads
-from psph.lab.bench import BLOCK, BOX, DAM, FALLING
+from psph.lab.bench import BLOCK, BOX, DAM, FALLING, GAS
+from psph.lab.bench.blast import Blast
 from psph.lab.bench.block import Block
 from psph.lab.bench.box import FluidBox
 from psph.lab.bench.falling import Falling
@@ -37,7 +38,13 @@ WARM_UP, REPEATS, STEPS = 20, 5, 20
 TURNS = 15
 """Blocks where two cases are compared: their difference may be small."""
 
-LAYOUTS = {BOX: FluidBox.nearest, DAM: Tank.nearest, FALLING: Falling.nearest, BLOCK: Block.nearest}
+LAYOUTS = {
+    BOX: FluidBox.nearest,
+    DAM: Tank.nearest,
+    FALLING: Falling.nearest,
+    BLOCK: Block.nearest,
+    GAS: Blast.nearest,
+}
 """For each problem: (dimensions, neighbours, particles) to what lays it out."""
 
 
@@ -218,7 +225,8 @@ def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
     if not simulation.plan.passes:
         pairs = sum(work.pairs() for work in simulation.engine.kinds)
         return tuple(comm.allreduce(n) for n in (store.owned, pairs, pairs))
-    support = scene.support
+    sizes = simulation.plan.sizes
+    support = np.full(store.total, scene.support) if sizes is None else sizes.support * store[sizes.length]
     inside = count_inside(
         store.view(),
         simulation.domain.periods,
@@ -235,13 +243,14 @@ def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
 
 @compiled
 def count_inside(view, periods, support2, low, owned, begin, lengths, lists):
-    """Entries of the lists that lie within the support."""
+    """Entries of the lists that lie within the support of the particle that lists them, whose squares, m²,
+    are ``support2`` (columns,)."""
     inside = 0
     for k in range(owned):
         i = take(view, low + k)
         for n in range(begin[k], begin[k] + np.uint64(lengths[k])):
             x_ij = nearest_image(subtract(i.position, take(view, lists[n]).position), periods)
-            inside += dot(x_ij, x_ij) < support2
+            inside += dot(x_ij, x_ij) < support2[low + k]
     return inside
 
 

@@ -7,9 +7,11 @@ from scipy.spatial.distance import pdist
 
 from psph.fields import FLUID
 from psph.lab.bench import falling
+from psph.lab.bench.blast import COLD, HOT, RADIUS, Blast
 from psph.lab.bench.box import FluidBox
 from psph.lab.bench.command import one, standard
 from psph.lab.bench.falling import COARSEST, Falling, fall
+from psph.lab.bench.measure import _work
 from psph.lab.bench.tank import HEIGHT, Tank
 from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
@@ -58,6 +60,22 @@ def test_choices_that_make_no_sense():
         one("block", None, None, 20)
     with pytest.raises(BenchError, match="--neighbours 0: give at least 1"):
         one(None, None, None, 0)
+
+
+def test_a_blast_has_the_neighbours_that_are_asked_for():
+    """By the h that it has found, hot in the middle; of single precision gases know nothing."""
+    blast = Blast.nearest(3, 64, 8000)
+    assert blast.sides**3 == pytest.approx(8000, rel=0.1)
+    scene = Scene(blast.case())
+    plan = make_plan(scene)
+    simulation = Simulation(scene, plan, blast.create(scene, plan, alone()), alone(), Ledger())
+    count, pairs, entries = _work(simulation, scene)
+    assert pairs / count == pytest.approx(64, rel=0.03) and entries > 1.5 * pairs
+    heat = simulation.store.shown("thermal_energy")
+    assert set(heat.tolist()) == {HOT, COLD}
+    assert (heat == HOT).mean() == pytest.approx(4.0 / 3.0 * np.pi * RADIUS**3, rel=0.1)
+    with pytest.raises(BenchError, match="gas: gases are computed in double precision"):
+        one("gas", None, None, None, "mixed")
 
 
 def half_fallen(dim, neighbours, many, comm):
