@@ -5,6 +5,7 @@ column by itself: the bits do not depend on the number of threads.
 """
 
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 from psph.errors import Refused
@@ -39,8 +40,13 @@ def use_threads(number: int) -> None:
 
 def in_threads(loop, first: int, last: int, *args) -> list:
     """``loop(a, b, *args)`` for parts a to b of the columns ``first`` to ``last``; what each gave."""
+    return in_rooms(loop, first, last, [()] * _count, *args)
+
+
+def in_rooms(loop, first: int, last: int, rooms: Sequence[tuple], *args) -> list:
+    """The same of ``loop(a, b, *args, *room)``, where each thread has a room of its own to work in."""
     if _pool is None or last - first < _count:
-        return [loop(first, last, *args)]
+        return [loop(first, last, *args, *rooms[0])]
     cuts = [first + (last - first) * part // _count for part in range(_count + 1)]
-    others = [_pool.submit(loop, a, b, *args) for a, b in zip(cuts[1:], cuts[2:])]
-    return [loop(*cuts[:2], *args), *(other.result() for other in others)]
+    others = [_pool.submit(loop, a, b, *args, *room) for a, b, room in zip(cuts[1:], cuts[2:], rooms[1:])]
+    return [loop(*cuts[:2], *args, *rooms[0]), *(other.result() for other in others)]

@@ -12,6 +12,7 @@ from psph.physics.gas.shocks import switches
 from psph.physics.gas.state import (
     EVENNESS,
     HEAT,
+    INVERSE_LENGTH,
     LENGTH,
     LISTED_LENGTH,
     OF_GASES,
@@ -26,6 +27,7 @@ from psph.scene.parts.gas import GasPart
 from psph.scene.sites import sites_within
 from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
+from psph.simulation.near_rows import NEARER
 from psph.simulation.stages import nothing
 from psph.smoothing import unit_kernel, weight
 from psph.theory.stability import SYMMETRIC
@@ -39,8 +41,11 @@ FORCE_LIMIT = 0.25
 COOLING_LIMIT = 0.3
 """Share of its heat that a particle loses in a step at the most."""
 
-FLOPS = 60
-"""Operations of a neighbour in the iteration of smoothing lengths, of about four turns."""
+FLOPS = 40
+"""Operations of a neighbour in the iteration of smoothing lengths, of about two turns."""
+
+ROW = 12
+"""Bytes of where a row begins and of how long it is."""
 
 
 class IdealGases(Kind):
@@ -151,7 +156,7 @@ class IdealGases(Kind):
 
     def renews(self, passes) -> tuple[str, ...]:
         """Lengths and what follows from them, and the heat, of which too low a prediction is lifted."""
-        of_lengths = LENGTH.name, UNEQUAL.name, EVENNESS.name, "specific_volume"
+        of_lengths = LENGTH.name, INVERSE_LENGTH.name, UNEQUAL.name, EVENNESS.name, "specific_volume"
         return *of_lengths, SOUND.name, PREDICTED, "pressure"
 
     def stages(self) -> Mapping[str, Stage]:
@@ -235,10 +240,10 @@ class IdealGases(Kind):
         )
 
     def bytes_of_particle(self, plan) -> float:
-        """Lists reach farther than those of one size."""
+        """Lists reach farther than those of one size, and there are rows of those that are close."""
         skin, d = self.scene.case.neighbours.skin, self.scene.dimensions
-        farther = (GROWTH + skin) ** d - (1.0 + skin) ** d
-        return 4.0 * sites_within(self.scene, self.scene.support) * farther
+        farther = (GROWTH + skin) ** d - (1.0 + skin) ** d + NEARER**d
+        return 4.0 * sites_within(self.scene, self.scene.support) * farther + ROW
 
     def flops(self) -> float:
         """In the iteration."""

@@ -7,7 +7,11 @@ import numpy as np
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.parallel.skin import PART_OF_CUTOFF, PART_OF_PERIOD
+from psph.particles.drift_by_size import shares_moved
 from psph.particles.sizes import Sizes
+
+ENOUGH = 1.1
+"""Growth left to all by their own ways alone, with which nobody looks how far neighbours have come."""
 
 
 class Straying:
@@ -15,16 +19,18 @@ class Straying:
 
     Lists reach so far beyond the larger support of a pair (psph.particles.sizes).  How
     far each has strayed is measured where it stands at the end of a step, less the way that all matter has
-    gone in the mean: a cloud that drifts as one needs no new lists for it.  No particle is more than
-    ``farthest`` m from where it was listed.  By ``growth`` a smoothing length may be larger than then for
-    lists to hold.  The same on every rank.
+    gone in the mean: a cloud that drifts as one needs no new lists for it.  Where that is too much, what
+    counts is how far neighbours have come from each other at the most, over their sizes: a gas that a shock
+    drives on goes ``together``.  Beside mirrors that is not asked: an image goes the other way.  No
+    particle is more than ``farthest`` m from where it was listed.  By ``growth`` (owned,) a smoothing length
+    may be larger than then for lists to hold.  The same on every rank.
     """
 
-    def __init__(self, domain: Domain, sizes: Sizes):
-        self.domain, self._sizes = domain, sizes
+    def __init__(self, domain: Domain, sizes: Sizes, together: bool):
+        self.domain, self._sizes, self._together = domain, sizes, together
         self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
         self._drift, self._since = (0.0,) * domain.store.dimensions, 0.0
-        self.growth = sizes.growth_left(0.0)
+        self.growth = np.zeros(0)
 
     @property
     def farthest(self) -> float:
@@ -37,7 +43,7 @@ class Straying:
         terms = [store.shown("mass"), *(store.shown("mass") * v[inner] for v in store["velocity"])]
         mass, *momentum = exact_sums(self.domain.comm, np.stack(terms, axis=1)).tolist()
         self._drift, self._since = tuple(p / mass for p in momentum), 0.0
-        self.growth = self._sizes.growth_left(0.0)
+        self.growth = np.full(store.owned, self._sizes.growth_left(0.0, 0.0))
 
     def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
         """True: it is measured once particles have moved by the step of ``dt`` s, see :meth:`reach`."""
@@ -51,12 +57,30 @@ class Straying:
         for x, listed, v in zip(store["position"], store["listed_position"], self._drift):
             way = x[inner] - listed[inner]
             apart2, strayed2 = apart2 + way**2, strayed2 + (way - v * self._since) ** 2
-        share2 = strayed2 / (self._sizes.support * store[self._sizes.listed][inner]) ** 2
-        tops = [apart2.max(initial=0.0), share2.max(initial=0.0)]
-        apart2, share2 = largest(self.domain.comm, tops).tolist()
-        self.growth = self._sizes.growth_left(math.sqrt(share2))
+        share = np.sqrt(strayed2 / (self._sizes.support * store[self._sizes.listed][inner]) ** 2)
+        tops = [apart2.max(initial=0.0), share.max(initial=0.0)]
+        apart2, most = largest(self.domain.comm, tops).tolist()
+        self.growth = self._sizes.growth_left(share, most)
         # Written so that NaN asks for new lists.
-        return self.growth > 0.0 and apart2 < self.farthest**2
+        near = apart2 < self.farthest**2
+        if near and self._together and not self._sizes.growth_left(most, most) > ENOUGH:
+            most = min(most, self._see_who_goes_together())
+        return near and self._sizes.growth_left(most, most) > self._sizes.least_growth
+
+    def _see_who_goes_together(self) -> float:
+        """More growth where neighbours have come little from each other; half of the most that any have, over
+        their support.  Collective."""
+        domain, store, support = self.domain, self.domain.store, self._sizes.support
+        domain.halo.refresh(("position",))  # ghosts stand where they were
+        names = "position", "listed_position", "velocity"
+        rows = [np.array(store.rows[name], np.int64) for name in names]
+        length = store[self._sizes.listed][: store.total]
+        share, across = shares_moved(store.data, rows, length, domain.starts, domain.planes, domain.grid)
+        share = share[store.inner] / support
+        most, across = largest(domain.comm, [share.max(initial=0.0), across / support]).tolist()
+        found = self._sizes.growth_left(np.maximum(share, across), 0.0)
+        self.growth = np.maximum(self.growth, found)
+        return 0.5 * max(most, across)
 
     def state(self) -> dict:
         """What :meth:`reach` rests on beside the particles."""

@@ -2,11 +2,11 @@
 
 import numpy as np
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from psph.engine.jit import overload, tuple_of, unrolled
-from psph.engine.simd import bits, consecutive
+from psph.engine.simd import bits, consecutive, lanes_of
 from psph.vectors import at, dot, nearest_image, subtract
 
 LANES = 8
@@ -93,3 +93,81 @@ def _store_packed(typing, entries, end, column, table, bits):
         return context.get_dummy_value()
 
     return types.none(entries, types.uint64, types.uint64, table, types.uint64), build
+
+
+def keep_lanes(array, end: int, lanes, bits: int) -> int:
+    """Write those lanes of which a bit is set behind ``array[end - 1]``; the new end.
+
+    A whole register behind ``end`` is written: there must be room.
+    """
+    if bits:
+        array[end] = lanes
+    return end + int(bits != 0)
+
+
+@overload(keep_lanes)
+def _typed_keep_lanes(array, end, lanes, bits):
+    def keep(array, end, lanes, bits):
+        _store_kept(array, end, lanes, bits)
+        return end + HOW_MANY[bits]
+
+    return keep
+
+
+def keep_entries(array, end: int, source, first: int, bits: int, like) -> None:
+    """The same of ``source[first + t]``, for each bit t of as many as ``like`` has lanes."""
+    if bits:
+        array[end] = source[first]
+
+
+@overload(keep_entries)
+def _typed_keep_entries(array, end, source, first, bits, like):
+    return lambda array, end, source, first, bits, like: _store_kept_entries(
+        array, end, source, first, bits, like
+    )
+
+
+def _compressed(builder, value, bits):
+    """Lanes of ``value`` of which a bit is set, packed to the left."""
+    width, whole = value.type.count, ir.IntType(1)
+    mask = builder.bitcast(builder.trunc(bits, ir.IntType(width)), ir.VectorType(whole, width))
+    kind = "f64" if isinstance(value.type.element, ir.DoubleType) else "i32"
+    call = cgutils.get_or_insert_function(
+        builder.module,
+        ir.FunctionType(value.type, [value.type, mask.type, value.type]),
+        f"llvm.experimental.vector.compress.v{width}{kind}",
+    )
+    return builder.call(call, [value, mask, ir.Constant(value.type, ir.Undefined)])
+
+
+@intrinsic
+def _store_kept(typing, array, end, lanes, bits):
+    """Lanes that are kept, written at ``end``."""
+
+    def build(context, builder, signature, args):
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+        place = builder.bitcast(builder.gep(data, [args[1]]), args[2].type.as_pointer())
+        builder.store(_compressed(builder, args[2], args[3]), place).align = 8
+        return context.get_dummy_value()
+
+    return types.none(array, types.uint64, lanes, types.uint64), build
+
+
+@intrinsic
+def _store_kept_entries(typing, array, end, source, first, bits, like):
+    """Entries that are kept, of so many as a register of ``like`` has lanes, written at ``end``."""
+    width = lanes_of(like.dtype).width
+
+    def build(context, builder, signature, args):
+        kind = ir.VectorType(ir.IntType(32), width)
+
+        def place(k, index):
+            data = context.make_array(signature.args[k])(context, builder, args[k]).data
+            return builder.bitcast(builder.gep(data, [index]), kind.as_pointer())
+
+        value = builder.load(place(2, args[3]))
+        value.align = 4
+        builder.store(_compressed(builder, value, args[4]), place(0, args[1])).align = 4
+        return context.get_dummy_value()
+
+    return types.none(array, types.uint64, source, types.uint64, types.uint64, like), build

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import compiled, inside, overload, register_jitable
+from psph.engine.jit import inside, overload, register_jitable, uncounted
 from psph.engine.simd import bits, consecutive, width_of
-from psph.engine.threads import in_threads
+from psph.engine.threads import in_rooms, threads
 from psph.particles.lanes import LANES, append_near, consecutive_each
 from psph.particles.level_rows import OwnedRows, holds_sought, looks
 from psph.particles.neighbours import Neighbours, empty, entries_for
@@ -33,6 +33,9 @@ the outermost."""
 
 BITS = 21
 """Of a cell's key for each axis."""
+
+RANGES = 64
+"""Ranges of candidates of a cell for which there is room at first; the guess need not be right."""
 
 SOME = 40
 """Entries of a row for which there is room at first; the guess need not be right."""
@@ -105,12 +108,15 @@ def list_by_levels(
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
+    rows, most = OwnedRows(slab.low, slab.owned, lanes, across, float(sizes.mutual), before), RANGES
     while True:
-        rows = OwnedRows(slab.low, slab.owned, lanes, across, float(sizes.mutual), before)
-        needed = max(in_threads(fill_levels, 0, len(grids.keys), grids, rows, room))
-        if needed == 0:
+        work = [(np.zeros((most, 2), np.int64), np.zeros((2, AXES))) for _ in range(threads())]
+        needed = in_rooms(fill_levels, 0, len(grids.keys), work, grids, rows, room)
+        if not any(needed):
             return room
-        room = room._replace(lists=entries_for(needed + needed // SPARE))
+        most = max(most, *(-2 * n for n in needed))
+        if max(needed) > 0:
+            room = room._replace(lists=entries_for(max(needed) + max(needed) // SPARE))
 
 
 def grids_of(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
@@ -210,16 +216,18 @@ def along_axis(low, high, far, inverse, count):
 
 
 @inside
-def extent(grids, first, last):
-    """Corners of the box around the particles ``first`` to ``last``, m from the origin, and their largest
-    reach, m."""
-    low, high, within2 = np.full(AXES, np.inf), np.full(AXES, -np.inf), 0.0
+def extent(grids, first, last, low, high):
+    """Write the corners of the box around the particles ``first`` to ``last``, m from the origin, to ``low``
+    and ``high`` (3,); their largest reach, m."""
+    within2 = 0.0
+    for a in range(AXES):
+        low[a], high[a] = np.inf, -np.inf
     for m in range(first, last):
         for a in range(AXES):
             x = grids.seen[a, m] - grids.origin[a]
             low[a], high[a] = min(low[a], x), max(high[a], x)
         within2 = max(within2, grids.within2[m])
-    return low, high, np.sqrt(within2)
+    return np.sqrt(within2)
 
 
 @register_jitable
@@ -240,8 +248,8 @@ def gap(low, high, cell, inverse, count):
 @inside
 def candidates(grids, low, high, reach, levels, ranges):
     """Ranges of particles of some ``levels``, from one to before another, in cells around a box, into the
-    rows of ``ranges`` (most, 2); these, with more room where that is needed, how many there are, and how many
-    particles they hold at the most."""
+    rows of ``ranges`` (most, 2), as far as there is room; how many there are, and how many particles they
+    hold at the most."""
     many, held = 0, 0
     for level in range(levels[0], levels[1]):
         n, per, box = grids.counts[level], grids.inverse[level], grids.box[level]
@@ -270,16 +278,13 @@ def candidates(grids, low, high, reach, levels, ranges):
                     stop = min(last2 - c2, n[2] - 1 - here) if n[2] > 0 else last2 - c2
                     key = line + here + FARTHEST
                     place, close = within(grids, level, place, key, key + stop)
-                    if many == len(ranges):
-                        more = np.empty((2 * many, 2), np.int64)
-                        more[:many] = ranges
-                        ranges = more
-                    ranges[many, 0], ranges[many, 1] = grids.starts[place], grids.starts[close]
+                    if many < len(ranges):
+                        ranges[many, 0], ranges[many, 1] = grids.starts[place], grids.starts[close]
                     many += close > place
                     held += grids.starts[close] - grids.starts[place] + LANES
                     place = close
                     c2 += stop + 1
-    return ranges, many, held
+    return many, held
 
 
 @inside
@@ -340,24 +345,27 @@ def append_row(entries, end, m, within2_i, grids, ranges, least, most):
     return end
 
 
-@compiled
-def fill_levels(first, last, grids, rows, room):
+@uncounted
+def fill_levels(first, last, grids, rows, room, ranges, corners):
     """Fill the rows of those particles in the cells ``first`` to ``last`` that a rank owns; returns 0, or
-    about how many entries are needed for all.
+    about how many entries are needed for all, or, with a minus, how many ``ranges`` (most, 2); ``corners``
+    (2, 3) is room too.
 
     Cells take the part of the ``room`` that is their part of the particles.
     """
     starts, entries, one = grids.starts, room.lists, np.uint64(1)
     each = len(entries) / starts[len(starts) - 1]
     begun, capacity = np.int64(each * starts[first]), np.int64(each * starts[last])
-    end, level, ranges = np.uint64(begun), 0, np.empty((64, 2), np.int64)
+    end, level, low, high = np.uint64(begun), 0, corners[0], corners[1]
     for cell in range(first, last):
         while cell >= grids.base[level + 1]:
             level += 1
         # The particles of a cell have the same candidates.
-        low, high, reach = extent(grids, starts[cell], starts[cell + 1])
+        reach = extent(grids, starts[cell], starts[cell + 1], low, high)
         levels = (0, len(grids.reach)) if looks(rows, starts[cell], starts[cell + 1]) else (level, level + 1)
-        ranges, many, held = candidates(grids, low, high, rows.own * reach, levels, ranges)
+        many, held = candidates(grids, low, high, rows.own * reach, levels, ranges)
+        if many > len(ranges):
+            return -np.int64(many)
         own = of_level(grids, level, ranges, many)
         many = many if holds_sought(rows.sought, ranges, many) else 0
         own = own if many else (0, 0)

@@ -51,11 +51,20 @@ class Sizes(NamedTuple):
         """Whether particles of some ``group`` (n,) list others of all levels (n,)."""
         return np.ones(len(group), np.bool_) if self.across is None else self.across[group]
 
-    def growth_left(self, strayed: float) -> float:
-        """By how much h may have grown since lists were made, where particles have ``strayed`` by this part
-        of their support then, at the most; 0 where lists reach too short."""
-        found = self.growth + self.skin - 2.0 * strayed
-        return found if found > min(self.growth, LEAST_GROWTH) else 0.0
+    @property
+    def grow(self) -> bool:
+        """Whether sizes change in time."""
+        return self.growth > 1.0
+
+    @property
+    def least_growth(self) -> float:
+        """Growth for which lists have to reach at the least."""
+        return min(self.growth, LEAST_GROWTH)
+
+    def growth_left(self, strayed, most: float):
+        """By how much h may have grown since lists were made, of particles that have ``strayed`` by this part
+        of their support then, and others by this at the ``most``."""
+        return self.growth + self.skin - strayed - most
 
     def cutoff(self, longest: float, periods) -> float:
         """How far lists reach, m, by the ``longest`` smoothing length of all; raises TooLarge where that does

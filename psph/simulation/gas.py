@@ -5,22 +5,24 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from psph.engine.threads import in_threads
+from psph.engine.threads import in_rooms, in_threads
 from psph.errors import Failed
 from psph.parallel.reductions import exact_sums, largest
-from psph.physics.gas.state import EVENNESS, HEAT, LENGTH, LISTED_LENGTH, SIGNAL, SOUND, UNEQUAL
-from psph.simulation.gas_shares import find_shares, shares_of
-from psph.simulation.lengths import (
-    AXES,
-    NONE,
-    OUTGROWN,
-    Lengths,
-    Numbers,
-    find_lengths,
-    find_state,
-    images_in,
-    table_of,
+from psph.particles.neighbours import Neighbours, empty
+from psph.particles.store import SPARE
+from psph.physics.gas.state import (
+    EVENNESS,
+    HEAT,
+    INVERSE_LENGTH,
+    LENGTH,
+    LISTED_LENGTH,
+    SIGNAL,
+    SOUND,
+    UNEQUAL,
 )
+from psph.simulation.gas_shares import find_shares, shares_of
+from psph.simulation.lengths import NONE, OUTGROWN, SWOLLEN, Lengths, Numbers, find_lengths, find_state
+from psph.simulation.near_rows import AXES, SeenRows, images_in, rooms_for, table_of
 from psph.smoothing import unit_kernel
 from psph.work import Rank, Work
 
@@ -82,36 +84,62 @@ class Gases(Work):
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
         periods = (*scene.layout.periods, *(None,) * (AXES - scene.dimensions))
-        self._asked = Numbers(scene.dimensions, target, kernel, kernel.support, 1.0, periods)
+        self._room, self._nearer = np.zeros(0, np.uint64), empty(0, 0)
+        self._asked = Numbers(scene.dimensions, target, kernel, kernel.support, periods)
 
-    def fit(self, growth: float, mirrors) -> bool:
-        """Find smoothing lengths and densities; whether lists reach far enough for that: by ``growth``
-        lengths may be larger than when they were made.  ``mirrors`` show images, or None.  Collective.
+    def settle(self) -> None:
+        """New lists: room for rows of those alone that are close, which these are part of."""
+        lists, owned, lanes = self._domain.lists, self._store.owned, self._plan.space.lanes
+        padded = -(-lists.lengths[:owned].astype(np.uint64) // np.uint64(lanes)) * np.uint64(lanes)
+        ends = np.cumsum(padded, dtype=np.uint64)
+        self._room, needed = ends - padded, int(ends[-1]) if owned else 0
+        if owned > len(self._nearer.begin) or needed > len(self._nearer.lists):
+            self._nearer = empty(owned + owned // SPARE, needed + needed // SPARE)
+
+    def fit(self, growth: np.ndarray, mirrors) -> tuple[bool, Neighbours]:
+        """Find smoothing lengths and densities; whether lists reach far enough for that, and the rows that
+        forces go through: of those alone that are close, of all where an h has grown too much for that.
+
+        By ``growth`` (owned,) lengths may be larger than when lists were made.  ``mirrors`` show images, or
+        None.  Collective.
 
         Raises Unsized where there is no solution.
         """
-        store = self._store
-        came = np.zeros(store.total, np.uint8)
-        filled = LENGTH.name, "density", "specific_volume", UNEQUAL.name, EVENNESS.name
+        store, columns = self._store, self._store.total
+        came = np.zeros(columns, np.uint8)
+        of_lengths = LENGTH.name, INVERSE_LENGTH.name
+        filled = *of_lengths, "density", "specific_volume", UNEQUAL.name, EVENNESS.name
         found = Lengths(*(store[name] for name in filled), came)
-        self._each(
+        rows = store.low, self._domain.lists, self._nearer, self._plan.space.lanes, self._room
+        table = table_of(store["position"], found.inverse, columns)
+        images = images_in(mirrors, self._domain.cutoff)
+        in_rooms(
             find_lengths,
             store.low,
-            self._asked._replace(growth=growth, images=images_in(mirrors, self._domain.cutoff)),
-            self._domain.lists,
-            table_of(store["position"], store.value("mass"), store.total),
+            store.low + store.owned,
+            rooms_for(self._domain.lists, images, store.owned),
+            self._asked._replace(images=images),
+            SeenRows(*rows, table, store.value("mass")),
+            growth,
             store[LISTED_LENGTH.name],
             found,
         )
         own = came[store.inner]
         lost = self._worst(own == NONE)
-        outgrown, lost = largest(self._domain.comm, [float((own == OUTGROWN).any()), lost])
+        tops = [float((own == OUTGROWN).any()), float((own == SWOLLEN).any()), lost]
+        outgrown, swollen, lost = largest(self._domain.comm, tops)
         if lost:
             raise Unsized(
                 f"particle {int(lost) - 1}: no smoothing length gives it the neighbours that space.smoothing "
                 "asks for; particles may stand in one place: give a smaller time.cfl"
             )
-        return not outgrown
+        return not outgrown, self._domain.lists if swollen else self._nearer
+
+    def guess(self) -> None:
+        """At the start, from which lengths the first are found; collective."""
+        store = self._store
+        store[INVERSE_LENGTH.name][store.inner] = 1.0 / store[LENGTH.name][store.inner]
+        self._domain.halo.refresh((INVERSE_LENGTH.name,))
 
     def heat(self) -> None:
         """At the start, the thermal energy that gives each particle the pressure of the case."""
@@ -167,6 +195,11 @@ class Gases(Work):
         """The same."""
         return (self.energy(),)
 
+    def bytes_held(self) -> int:
+        """Those of rows of who is close, as far as they are filled."""
+        rows = self._nearer
+        return rows.begin.nbytes + rows.lengths.nbytes + 4 * int(rows.lengths[: self._store.owned].sum())
+
     def state(self) -> dict:
         """What sets the next step."""
         return {self.name: self._pace.tops}
@@ -203,6 +236,7 @@ def find_sizes(simulation) -> None:
 def begin_sizes(simulation) -> None:
     """The same at the start, where the pressure of the case becomes heat."""
     gases = simulation.engine.of(Gases.name)
+    gases.guess()
     simulation.neighbourhood.move_mirrors(simulation.time)
     _fit(simulation, gases)
     gases.heat()
@@ -213,8 +247,9 @@ def _fit(simulation, gases: Gases) -> None:
     """Smoothing lengths, and lists that reach far enough for them."""
     for _ in range(MOST_LISTS):
         with simulation.ledger("lengths"):
-            fits = gases.fit(simulation.neighbourhood.skin.growth, simulation.neighbourhood.mirrors)
+            fits, nearer = gases.fit(simulation.neighbourhood.skin.growth, simulation.neighbourhood.mirrors)
         if fits:
+            simulation.neighbourhood.meet(nearer)
             return
         simulation.rebuild()
         simulation.listed = False

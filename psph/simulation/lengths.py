@@ -10,68 +10,47 @@ from typing import NamedTuple
 import numpy as np
 from numba.core import types
 
-from psph.engine.jit import compiled, elementwise, inside, overload
-from psph.engine.simd import EIGHT, consecutive, put_consecutive, spread, total, turning, width_of
+from psph.engine.jit import elementwise, inside, overload, uncounted
+from psph.engine.simd import consecutive, spread, total, width_of
+from psph.simulation.near_rows import ALL, AXES, NEARER, meet, meets_all, own_mass
 from psph.smoothing import slope, weight
-from psph.vectors import dot, nearest_image, subtract
 
-CLOSE = 1e-6
-"""Relative change of h by which it is found."""
+CLOSE = 1e-8
+"""Relative change of h by which it is found: by as much 1/Ω is off, and 1e-6 would be heard beside a sound of
+1e-4."""
 
 MOST_CHANGE = 0.2
 """Relative change of h in one turn."""
 
 MOST_TURNS = 100
-"""Turns after which there is no solution: of Newton's method three to five are usual."""
+"""Turns after which there is no solution: of Newton's method one to three are usual."""
 
 BEYOND = 64.0
 """Distance over h that lanes behind the last neighbour get: beyond the support of every kernel."""
 
-AXES, NUMBERS = 3, 4
-"""Of a particle in a table: its place, with zeros along axes that there are not, and its mass."""
-
-FOUND, OUTGROWN, NONE = 0, 1, 2
-"""What came of it: h is found; it is larger than lists reach; there is none."""
-
-
-class Images(NamedTuple):
-    """Where images in mirrors stand: at ``turns`` x + ``shifts``, m, three numbers for each; a particle
-    farther than ``reach`` m from a plane sees none."""
-
-    turns: tuple[tuple[float, ...], ...]
-    shifts: tuple[tuple[float, ...], ...]
-    reach: float
-
-
-def images_in(mirrors, reach: float) -> Images | None:
-    """Those in ``mirrors`` (psph.composition.mirrors), seen up to ``reach`` m; None without mirrors."""
-    if mirrors is None:
-        return None
-    seen = mirrors.reflections[1:]
-    turns = tuple((*one.turn, *(1.0,) * (AXES - len(one.turn))) for one in seen)
-    shifts = tuple((*one.shift, *(0.0,) * (AXES - len(one.shift))) for one in seen)
-    return Images(turns, shifts, reach)
+FOUND, SWOLLEN, OUTGROWN, NONE = 0, 1, 2, 3
+"""What came of it: h is found; found, and nearer rows of others may lack the particle; it is larger than
+lists reach; there is none."""
 
 
 class Numbers(NamedTuple):
     """What is asked in so many ``dimensions``: ``target`` η^d, a ``kernel`` with h = 1 m and its ``support``,
-    how far h may exceed that of the lists, ``growth``, the ``periods`` (3,), m or None, and the ``images``
-    in mirrors, or None."""
+    the ``periods`` (3,), m or None, and the ``images`` in mirrors, or None."""
 
     dimensions: int
     target: float
     kernel: object
     support: float
-    growth: float
     periods: tuple
     images: object = None
 
 
 class Lengths(NamedTuple):
-    """Arrays that are filled: h, ρ, 1/ρ, q and 1/Ω (psph.physics.gas.state), and what came of it, by
+    """Arrays that are filled: h, 1/h, ρ, 1/ρ, q and 1/Ω (psph.physics.gas.state), and what came of it, by
     column."""
 
     length: object
+    inverse: object
     density: object
     specific_volume: object
     unequal: object
@@ -79,157 +58,70 @@ class Lengths(NamedTuple):
     came: object
 
 
-class Distances(NamedTuple):
-    """To the neighbours of a particle: ``distance``, m, and ``mass``, kg; both go on for a register."""
-
-    distance: object
-    mass: object
-
-
 @inside
-def gather(k, row, beyond, asked, lists, table, near):
-    """Write distances and masses of all that the ``row`` of the column ``k`` names to ``near``, of their
-    images and its own, and behind them lanes ``beyond`` m away; how many there are."""
-    many, begin = np.uint64(lists.lengths[row]), lists.begin[row]
-    place = table[k, 0], table[k, 1], table[k, 2]
-    for n in range(np.uint64(0), many, width_of(table)):
-        x, y, z, m = fetched(table, lists.lists, begin + n)
-        x_ij = nearest_image(subtract(place, (x, y, z)), asked.periods)
-        put_consecutive(near.distance, n, np.sqrt(dot(x_ij, x_ij)))
-        put_consecutive(near.mass, n, m)
-    many = with_images(asked.images, k, row, many, asked.periods, lists, table, near)
-    for n in range(many, many + np.uint64(EIGHT)):
-        near.distance[n] = beyond
-    return many
-
-
-def with_images(images, k, row, many, periods, lists, table, near):
-    """Write those of images in mirrors behind the ``many`` that are there; how many there are then."""
-    return many if images is None else _with_images(images, k, row, many, periods, lists, table, near)
-
-
-@overload(with_images)
-def _typed_with_images(images, k, row, many, periods, lists, table, near):
-    if isinstance(images, types.NoneType):
-        return lambda images, k, row, many, periods, lists, table, near: many
-    return lambda images, k, row, many, periods, lists, table, near: _with_images(
-        images, k, row, many, periods, lists, table, near
-    )
-
-
-@inside
-def _with_images(images, k, row, many, periods, lists, table, near):
-    listed, begin = np.uint64(lists.lengths[row]), lists.begin[row]
-    place = table[k, 0], table[k, 1], table[k, 2]
-    for one in range(len(images.turns)):
-        turn, shift = images.turns[one], images.shifts[one]
-        seen = True
-        for d in range(AXES):
-            seen = seen and (turn[d] > 0.0 or abs(2.0 * place[d] - shift[d]) < 2.0 * images.reach)
-        if not seen:
-            continue
-        # Its distance from the image of j is that of its own image from j.
-        image = turn[0] * place[0] + shift[0], turn[1] * place[1] + shift[1], turn[2] * place[2] + shift[2]
-        for n in range(np.uint64(0), listed, width_of(table)):
-            x, y, z, m = fetched(table, lists.lists, begin + n)
-            x_ij = nearest_image(subtract(image, (x, y, z)), periods)
-            put_consecutive(near.distance, many + n, np.sqrt(dot(x_ij, x_ij)))
-            put_consecutive(near.mass, many + n, m)
-        many += listed
-        x_ij = nearest_image(subtract(image, place), periods)
-        near.distance[many], near.mass[many] = np.sqrt(dot(x_ij, x_ij)), table[k, AXES]
-        many += np.uint64(1)
-    return many
-
-
-def seen(images, listed):
-    """How many a particle sees at the most that has so many neighbours ``listed``, images with them."""
-    return listed if images is None else (1 + len(images.turns)) * (listed + 1)
-
-
-@overload(seen)
-def _typed_seen(images, listed):
-    if isinstance(images, types.NoneType):
-        return lambda images, listed: listed
-    return lambda images, listed: (1 + len(images.turns)) * (listed + 1)
-
-
-def fetched(table, lists, entry):
-    """The numbers of the particles ``lists[entry]`` and following, as lanes."""
-    return tuple(table[lists[entry]])
-
-
-@overload(fetched)
-def _typed_fetched(table, lists, entry):
-    turn = turning(NUMBERS)
-    return lambda table, lists, entry: turn(table, lists, entry)
-
-
-class KernelSums(NamedTuple):
-    """Sums over the neighbours of a particle, in units of h^d: the ``number`` n, and how it rises with
-    ln h, ``growing``; the same of masses, ``rho`` and ``rising``, kg."""
-
-    number: object
-    growing: object
-    rho: object
-    rising: object
-
-
-@inside
-def shares_with(h, kernel, near, many):
-    """Sums over the neighbours alone, with the smoothing length ``h``."""
+def numbers_with(h, kernel, distance, many):
+    """Σ W over the neighbours alone with the smoothing length ``h``, and how it rises with ln h: both times
+    h^d."""
     inverse = 1.0 / h
-    number = growing = rho = rising = spread(0.0, near.distance)
-    for n in range(np.uint64(0), many, width_of(near.distance)):
-        s, m = consecutive(near.distance, n) * inverse, consecutive(near.mass, n)
-        w, falls = weight(kernel, s), s * slope(kernel, s)
-        number, growing = number + w, growing - falls
-        rho, rising = rho + m * w, rising - m * falls
-    return KernelSums(total(number), total(growing), total(rho), total(rising))
+    number = growing = spread(0.0, distance)
+    for n in range(np.uint64(0), many, width_of(distance)):
+        s = consecutive(distance, n) * inverse
+        number, growing = number + weight(kernel, s), growing - s * slope(kernel, s)
+    return total(number), total(growing)
 
 
-def table_of(position, mass, columns: int) -> np.ndarray:
-    """Places, m, and masses, kg, of so many columns side by side (columns, 4)."""
-    table = np.zeros((columns, NUMBERS))
-    for d, x in enumerate(position):
-        table[:, d] = x[:columns]
-    table[:, AXES] = mass if np.ndim(mass) == 0 else mass[:columns]
-    return table
+def masses_with(h, kernel, mass, numbers, met, many):
+    """The same of masses, kg; ``numbers`` are those of numbers."""
+    if np.ndim(mass) == 0:
+        return mass * numbers[0], mass * numbers[1]
+    return _masses_with(h, kernel, met, many)
+
+
+@overload(masses_with)
+def _typed_masses_with(h, kernel, mass, numbers, met, many):
+    if isinstance(mass, types.Array):
+        return lambda h, kernel, mass, numbers, met, many: _masses_with(h, kernel, met, many)
+    return lambda h, kernel, mass, numbers, met, many: (mass * numbers[0], mass * numbers[1])
 
 
 @inside
-def room_for(near, most):
-    """``near``, or longer ones, for ``most`` neighbours."""
-    if most + EIGHT <= len(near.distance):
-        return near
-    return Distances(np.zeros(2 * most + EIGHT), np.zeros(2 * most + EIGHT))
+def _masses_with(h, kernel, met, many):
+    inverse = 1.0 / h
+    rho = rising = spread(0.0, met.distance)
+    for n in range(np.uint64(0), many, width_of(met.distance)):
+        s, m = consecutive(met.distance, n) * inverse, consecutive(met.mass, n)
+        rho, rising = rho + m * weight(kernel, s), rising - m * (s * slope(kernel, s))
+    return total(rho), total(rising)
 
 
-@compiled
-def find_lengths(first, last, low, asked, lists, table, listed, found):
-    """Find h, ρ and q of the particles in columns ``first`` to ``last`` from their last h.
+@uncounted
+def find_lengths(first, last, asked, of, growth, listed, found, met):
+    """Find h, ρ and q of the particles in columns ``first`` to ``last`` from their last h, and their nearer
+    rows ``of`` what they see; ``met`` is room to work in.
 
-    ``table`` (columns, 4) has places, m, and masses, kg; ``listed`` (columns,) are the h of the lists, m.
-    Where all neighbours stand in one place with a particle, any h would do, and it stays.  Sums are over a
-    row alone, in its order: the same wherever a slab begins.
+    ``listed`` (columns,) are the h of the lists, m, by ``growth`` (owned,) they may be exceeded.  Where all
+    neighbours stand in one place with a particle, any h would do, and it stays.  Sums are over a row alone,
+    in its order: the same wherever a slab begins.
     """
-    d, kernel, near = asked.dimensions, asked.kernel, Distances(np.zeros(EIGHT), np.zeros(EIGHT))
-    alone = weight(kernel, 0.0)
+    d, kernel, alone = asked.dimensions, asked.kernel, weight(asked.kernel, 0.0)
+    end = of.room[first - of.low] if first < last else np.uint64(0)
     for k in range(np.uint64(first), np.uint64(last)):
-        row = k - np.uint64(low)
-        near = room_for(near, seen(asked.images, np.int64(lists.lengths[row])))
-        most = asked.growth * listed[k]
-        many = gather(k, row, BEYOND * most, asked, lists, table, near)
+        row, begin = k - np.uint64(of.low), end
+        most, before = growth[row] * listed[k], of.table[k, AXES]
+        swollen = found.length[k] > NEARER * before
+        closer = ALL if swollen or meets_all(asked.images, of.table, k) else NEARER
+        close, all_met = meet(k, row, closer, BEYOND * most, begin, asked, of, met)
         h, smallest, largest, came = min(found.length[k], most), 0.0, np.inf, NONE
-        sums = shares_with(h, kernel, near, many)
+        number, growing = numbers_with(h, kernel, met.distance, all_met)
         for _ in range(MOST_TURNS):
-            lacks = asked.target - alone - sums.number
-            if sums.growing > 0.0:
-                change = min(max(lacks / sums.growing, -MOST_CHANGE), MOST_CHANGE)
+            lacks = asked.target - alone - number
+            if growing > 0.0:
+                change = min(max(lacks / growing, -MOST_CHANGE), MOST_CHANGE)
             else:
                 change = MOST_CHANGE if lacks > 0.0 else 0.0
             if abs(change) < CLOSE:
-                came = FOUND
+                came, number = FOUND, number + growing * change
+                h = min(h * (1.0 + change), most)
                 break
             if lacks > 0.0:
                 smallest = h
@@ -242,13 +134,24 @@ def find_lengths(first, last, low, asked, lists, table, listed, found):
             if not smallest < wanted < largest:
                 wanted = 0.5 * (smallest + largest)
             h = min(wanted, most)
-            sums = shares_with(h, kernel, near, many)
-        found.length[k], found.came[k] = h, came
+            if h > closer * before:
+                closer, swollen = ALL, True
+                close, all_met = meet(k, row, closer, BEYOND * most, begin, asked, of, met)
+            number, growing = numbers_with(h, kernel, met.distance, all_met)
+        found.length[k], found.came[k] = h, SWOLLEN if came == FOUND and swollen else came
+        of.nearer.begin[row], of.nearer.lengths[row] = begin, close
+        end = begin + close
+        while (end - begin) % np.uint64(of.multiple) != np.uint64(0):
+            of.nearer.lists[end] = k
+            end += np.uint64(1)
         if came == FOUND:
-            rho = table[k, 3] * alone + sums.rho
+            mass, numbers = own_mass(of.mass, k), (number, growing)
+            rho, rising = masses_with(h, kernel, of.mass, numbers, met, all_met)
+            rho += mass * alone
             # ∂ρ/∂h = (rising − d ρ)/h in these units, and d n Ω = growing
-            found.unequal[k] = (d * rho - sums.rising) / -sums.growing if sums.growing > 0.0 else 0.0
-            found.evenness[k] = d * (alone + sums.number) / sums.growing if sums.growing > 0.0 else 1.0
+            found.unequal[k] = (d * rho - rising) / -growing if growing > 0.0 else 0.0
+            found.evenness[k] = d * (alone + number) / growing if growing > 0.0 else 1.0
+            found.inverse[k] = 1.0 / h
             rho /= h**d
             found.density[k], found.specific_volume[k] = rho, 1.0 / rho
 

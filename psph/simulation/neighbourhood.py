@@ -53,7 +53,7 @@ class Neighbourhood:
         if not self.plan.passes:
             return Unlisted()
         if self.plan.sizes is not None:
-            return Straying(self.domain, self.plan.sizes)
+            return Straying(self.domain, self.plan.sizes, not self.planes and self.plan.sizes.grow)
         return Skin(self.domain, width, self.plan.planes)
 
     def valid(self, dt: float, speed: float, acceleration: float, shift: float) -> bool:
@@ -99,10 +99,14 @@ class Neighbourhood:
 
     def fit(self) -> None:
         """Room for the images of every particle behind the entries of the lists."""
+        self.meet(self.domain.lists)
+
+    def meet(self, rows: Neighbours) -> None:
+        """Passes that are not across go through these ``rows``."""
         mirrors = self.mirrors
         if mirrors is not None and self.plan.sizes is not None:
             mirrors = mirrors._replace(reach=self.domain.cutoff)
-        self._mirrors, self._lists = with_own_rows(mirrors, self.store.total, self.domain.lists)
+        self._mirrors, self._lists = with_own_rows(mirrors, self.store.total, rows)
 
     def begin(self) -> None:
         """Which walls are dry at the start; lists are there."""

@@ -1,6 +1,7 @@
 """Particles in nests of ever finer squares or cubes: what a search by levels of cells costs, and a k-d tree.
 
-``python -m psph.lab.bench.uneven`` prints a table.  Times are those of this process's processor, so that they
+``python -m psph.lab.bench.uneven`` prints a table, and one of the ghosts between two ranks.  Times are those
+of this process's processor, so that they
 mean something on a machine that others use.
 """
 
@@ -27,6 +28,9 @@ SIDE = {2: 96, 3: 24}
 
 RATIOS = (1, 2, 10, 100)
 """The largest over the smallest size."""
+
+MANY = 4096
+"""Ranges of candidates of a cell, at the most."""
 
 REPEATS = 5
 """Searches of which the quickest counts."""
@@ -62,13 +66,14 @@ def nests(dimensions: int, ratio: float, side: int, seed: int = 1) -> tuple[np.n
 @compiled
 def count_candidates(grids):
     """How many particles all particles of the grids look at."""
-    count, level, ranges = 0, 0, np.empty((64, 2), np.int64)
+    count, level, ranges = 0, 0, np.empty((MANY, 2), np.int64)
+    low, high = np.empty(levels.AXES), np.empty(levels.AXES)
     for cell in range(len(grids.keys)):
         while cell >= grids.base[level + 1]:
             level += 1
         first, last = grids.starts[cell], grids.starts[cell + 1]
-        low, high, reach = levels.extent(grids, first, last)
-        ranges, many, _ = levels.candidates(grids, low, high, reach, (0, len(grids.reach)), ranges)
+        reach = levels.extent(grids, first, last, low, high)
+        many, _ = levels.candidates(grids, low, high, reach, (0, len(grids.reach)), ranges)
         for r in range(many):
             count += (last - first) * (ranges[r, 1] - ranges[r, 0])
     return count
@@ -95,6 +100,75 @@ def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Co
         quickest(repeats, by_levels) / entries,
         tree / int((cKDTree(x.T).query_ball_point(x.T, reach, return_length=True) - 1).sum()),
     )
+
+
+class Ghosts(NamedTuple):
+    """Particles that one of two ranks needs of the other, cut at 0 along x: of ``planes`` as wide as the
+    largest particle reaches; of ``thin`` ones as wide as the smallest reaches, of which each knows its
+    largest reach; and those in ``reach`` of any particle on the other side."""
+
+    planes: int
+    thin: int
+    reach: int
+
+
+def ghosts(x: np.ndarray, reach: np.ndarray) -> Ghosts:
+    """Those of the upper half of particles at ``x`` (dim, n), m, from −0.5 to 0.5 m, that list others up to
+    their ``reach`` (n,), m."""
+    below = x[0] < 0.0
+    side = 0.5 / max(1, int(0.5 / reach.max()))
+    width = 0.5 / int(0.5 / reach.min())
+    plane = np.floor(np.abs(x[0]) / width).astype(np.int64)
+    farthest = np.zeros((2, plane.max() + 1))
+    np.maximum.at(farthest, (below.astype(np.int64), plane), reach)
+    away = width * np.arange(plane.max() + 1)
+    looks = (farthest[0] - away)[farthest[0] > 0.0].max()  # how far beyond 0 those above look
+    needed = np.flatnonzero(away < np.where(farthest[1] > 0.0, np.maximum(farthest[1], looks), 0.0))
+    last = needed.max(initial=-1)
+    return Ghosts(
+        int((below & (x[0] >= -side)).sum()),
+        int((below & (plane <= last)).sum()),
+        int(_in_reach(x, reach, below).sum()),
+    )
+
+
+def _in_reach(x: np.ndarray, reach: np.ndarray, below: np.ndarray) -> np.ndarray:
+    """Who of those ``below`` is in reach of one above, or has one in reach (below,)."""
+    own, others = x[:, below].T, x[:, ~below].T
+    seen = np.zeros(len(own), np.bool_)
+    for found in cKDTree(own).query_ball_point(others, reach[~below]):
+        seen[found] = True
+    return seen | (cKDTree(others).query_ball_point(own, reach[below], return_length=True) > 0)
+
+
+def layers(dimensions: int, ratio: int, side: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Places (dim, n), m, and spacings (n,), m: coarse particles below 0.25 m along x, finer ones above."""
+    rng = np.random.default_rng(seed)
+    places, spacings = [], []
+    for low, high, many in ((-0.5, 0.25, side), (0.25, 0.5, ratio * side)):
+        site = (np.arange(many) + 0.5) / many - 0.5
+        x = np.stack(np.meshgrid(*[site] * dimensions, indexing="ij")).reshape(dimensions, -1)
+        x = x[:, (x[0] >= low) & (x[0] < high)]
+        places.append(x + rng.uniform(-0.3, 0.3, x.shape) / many)
+        spacings.append(np.full(x.shape[1], 1.0 / many))
+    return np.concatenate(places, axis=1), np.concatenate(spacings)
+
+
+def ghost_table() -> str:
+    """Ghosts between two ranks as lines of Markdown."""
+    lines = ["| | planes as wide as the largest reach | thin planes | in reach |", "|---|---|---|---|"]
+    for name, laid, where in (
+        ("nest, 10 : 1, cut in its middle", nests(3, 10.0, SIDE[3]), 0.0),
+        ("layers, 4 : 1, cut where it is coarse", layers(3, 4, SIDE[3]), 0.0),
+        ("the same, cut where it is fine", layers(3, 4, SIDE[3]), 0.35),
+    ):
+        x, spacing = laid
+        moved = np.array([x[0] - where, *x[1:]])
+        found = ghosts(
+            moved[:, np.abs(moved[0]) < 0.5], SIZES.reach(SMOOTHING * spacing)[np.abs(moved[0]) < 0.5]
+        )
+        lines.append(f"| {name} | {found.planes:,} | {found.thin:,} | {found.reach:,} |")
+    return "\n".join(lines)
 
 
 def quickest(repeats: int, work: Callable[[], object]) -> float:
@@ -125,4 +199,4 @@ def table(repeats: int = REPEATS) -> str:
 
 
 if __name__ == "__main__":
-    print(f"lists reach {GROWTH + SIZES.skin:g} times the support\n\n{table()}")
+    print(f"lists reach {GROWTH + SIZES.skin:g} times the support\n\n{table()}\n\n{ghost_table()}")

@@ -4,10 +4,9 @@ from typing import Any, NamedTuple
 
 from psph.acts import IDEAL_GASES
 from psph.physics.facts import Facts
-from psph.physics.gas.pressure import both_slopes
-from psph.physics.gas.shocks import conduction, even_slopes, share, shock_pressure, switches
+from psph.physics.gas.pressure import both_slopes, even_slopes, slopes_in
+from psph.physics.gas.shocks import conduction, share, shock_pressure, switches
 from psph.physics.gas.state import HEAT
-from psph.smoothing import unit_kernel
 
 
 class GasHeat(NamedTuple):
@@ -23,18 +22,18 @@ class GasHeat(NamedTuple):
     alpha: float = 0.0
     beta: float = 0.0
     strength: float = 0.0
-    kernel: Any = None
+    form: Any = None
 
     writes = HEAT
 
     def in_scene(self, scene: Facts):
-        """With the viscosity and the conduction of the scene, and the kernel for h = 1 m."""
+        """With the viscosity and the conduction of the scene, and slopes by its masses."""
         viscosity, spread = scene.physics.shock_viscosity, scene.physics.heat_conduction
         return (SwitchedHeat if switches(viscosity) else GasHeat)(
             viscosity.alpha if viscosity else 0.0,
             viscosity.beta if viscosity else 0.0,
             spread.strength if spread else 0.0,
-            unit_kernel(scene.kernel, scene.dimensions),
+            slopes_in(scene),
         )
 
     def start(self, i):
@@ -43,8 +42,8 @@ class GasHeat(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Add one neighbour's share of u̇_i, W/kg."""
-        slope, _ = both_slopes(self.kernel, i, j, pair)
-        own, other = even_slopes(self.kernel, i, j, pair)
+        slope, _ = both_slopes(self.form, i, j, pair)
+        own, other = even_slopes(self.form.kernel, i, j, pair)
         work = i.pressure * i.specific_volume * i.specific_volume * slope
         rubbed = 0.25 * shock_pressure(self.alpha, self.beta, i, j, pair) * (own + other)
         spread = conduction(self.strength, own, other, i, j, pair)
@@ -61,15 +60,15 @@ class SwitchedHeat(NamedTuple):
     alpha: float
     beta: float
     strength: float
-    kernel: Any
+    form: Any
 
     writes = HEAT
     start, finish_value = GasHeat.start, GasHeat.finish_value
 
     def gather(self, total, i, j, pair):
         """Add one neighbour's share of u̇_i, W/kg."""
-        slope, _ = both_slopes(self.kernel, i, j, pair)
-        own, other = even_slopes(self.kernel, i, j, pair)
+        slope, _ = both_slopes(self.form, i, j, pair)
+        own, other = even_slopes(self.form.kernel, i, j, pair)
         work = i.pressure * i.specific_volume * i.specific_volume * slope
         nu = share(i, j) * shock_pressure(self.alpha, self.beta, i, j, pair)
         spread = conduction(self.strength, own, other, i, j, pair)

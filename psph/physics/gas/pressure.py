@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from psph.acts import IDEAL_GASES
-from psph.engine.jit import overload, unrolled
+from psph.engine.jit import call_by_type, overload, unrolled
 from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.smoothing import slope_over_r, unit_kernel
@@ -21,18 +21,52 @@ def _typed_power_of_slope(a, x):
 
 
 @helper
-def slope_by(kernel, h, pair):
-    """W′(r, h)/r by a ``kernel`` whose own h is 1 m, 1/m^(d + 2)."""
-    inverse = 1.0 / h
-    return slope_over_r(kernel, pair.r * inverse, pair.inverse_r * h) * power_of_slope(inverse, pair.x_ij)
+def slope_by(kernel, inverse, pair):
+    """W′(r, h)/r by a ``kernel`` whose own h is 1 m, 1/m^(d + 2); ``inverse`` is 1/h, 1/m."""
+    return slope_over_r(kernel, pair.r * inverse, pair.inverse_r / inverse) * power_of_slope(
+        inverse, pair.x_ij
+    )
 
 
 @helper
-def both_slopes(kernel, i, j, pair):
-    """m_j f_ij W′(h_i)/r and m_j f_ji W′(h_j)/r, with m_j f_ij = m_j − q_i: neighbours by number."""
-    own = (j.mass - i.unequal) * slope_by(kernel, i.smoothing_length, pair)
-    other = (j.mass - j.unequal * (j.mass / i.mass)) * slope_by(kernel, j.smoothing_length, pair)
-    return own, other
+def even_slopes(kernel, i, j, pair):
+    """m_j W′(h_i)/(r Ω_i) and m_j W′(h_j)/(r Ω_j), never above 0, so that friction heats, kg/m^(d + 2)."""
+    own = i.evenness * slope_by(kernel, i.inverse_length, pair)
+    other = j.evenness * slope_by(kernel, j.inverse_length, pair)
+    return j.mass * own, j.mass * other
+
+
+class OfOneMass(NamedTuple):
+    """Slopes m_j f_ij W′(h_i)/r and m_j f_ji W′(h_j)/r where all have one mass: f_ij = 1/Ω_i."""
+
+    kernel: Any
+
+    def slopes(self, i, j, pair):
+        """Both, kg/m^(d + 2)."""
+        return even_slopes(self.kernel, i, j, pair)
+
+
+class OfUnlikeMasses(NamedTuple):
+    """The same of any masses, m_j f_ij = m_j − q_i: neighbours by number."""
+
+    kernel: Any
+
+    def slopes(self, i, j, pair):
+        """Both, kg/m^(d + 2)."""
+        own = (j.mass - i.unequal) * slope_by(self.kernel, i.inverse_length, pair)
+        other = (j.mass - j.unequal * (j.mass / i.mass)) * slope_by(self.kernel, j.inverse_length, pair)
+        return own, other
+
+
+both_slopes = call_by_type("slopes")
+"""(form, i, j, pair) → m_j f_ij W′(h_i)/r and m_j f_ji W′(h_j)/r."""
+
+
+def slopes_in(scene: Facts) -> OfOneMass | OfUnlikeMasses:
+    """The form of both slopes in a ``scene``, with its kernel for h = 1 m."""
+    masses = {one.mass for one in scene.species}
+    alike = len(masses) == 1 and all(one.one_mass for one in scene.species)
+    return (OfOneMass if alike else OfUnlikeMasses)(unit_kernel(scene.kernel, scene.dimensions))
 
 
 class GasPressure(NamedTuple):
@@ -47,15 +81,15 @@ class GasPressure(NamedTuple):
     acts = (IDEAL_GASES,)
     conserves = ("momentum", "angular momentum")
 
-    kernel: Any = None
+    form: Any = None
 
     def in_scene(self, scene: Facts):
-        """With the kernel for h = 1 m."""
-        return GasPressure(unit_kernel(scene.kernel, scene.dimensions))
+        """With slopes by the masses of the scene."""
+        return GasPressure(slopes_in(scene))
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        own, other = both_slopes(self.kernel, i, j, pair)
+        own, other = both_slopes(self.form, i, j, pair)
         p_i = i.pressure * i.specific_volume * i.specific_volume
         p_j = j.pressure * j.specific_volume * j.specific_volume
         return scale(pair.x_ij, -(p_i * own + p_j * other))

@@ -8,43 +8,32 @@ from pydantic import Field
 from psph.acts import IDEAL_GASES
 from psph.formula import helper, where
 from psph.physics.facts import Facts
-from psph.physics.gas.pressure import slope_by
+from psph.physics.gas.pressure import even_slopes, slope_by
 from psph.physics.gas.state import SIGNAL
 from psph.smoothing import unit_kernel
 from psph.vectors import scale
 
 
 @helper
-def approach(pair):
-    """μ = min(0, u_ij·r̂), m/s."""
-    return min(pair.u_dot_x * pair.inverse_r, 0.0)
-
-
-@helper
-def mean_volume(i, j):
-    """1/ρ̄, ρ̄ the mean of both densities, m^d/kg."""
-    return 2.0 * i.specific_volume * j.specific_volume / (i.specific_volume + j.specific_volume)
+def approach(i, j, pair):
+    """μ = min(0, u_ij·r̂), m/s, and 1/ρ̄, ρ̄ the mean of both densities, m^d/kg: by one division."""
+    both = i.specific_volume + j.specific_volume
+    inverse = 1.0 / (pair.r * both)
+    mu = min(pair.u_dot_x * (both * inverse), 0.0)
+    return mu, 2.0 * i.specific_volume * j.specific_volume * (pair.r * inverse)
 
 
 @helper
 def shock_pressure(alpha, beta, i, j, pair):
     """ν = (−α c̄ μ + β μ²)/ρ̄, m^(d + 2)/(kg s²): 0 where a pair parts."""
-    mu = approach(pair)
-    return (beta * mu - 0.5 * alpha * (i.sound + j.sound)) * mu * mean_volume(i, j)
+    mu, volume = approach(i, j, pair)
+    return (beta * mu - 0.5 * alpha * (i.sound + j.sound)) * mu * volume
 
 
 @helper
 def share(i, j):
     """½(σ_i + σ_j), the share of the viscosity that a pair has (psph.physics.gas.switch), 1."""
     return 0.5 * (i.viscosity_share + j.viscosity_share)
-
-
-@helper
-def even_slopes(kernel, i, j, pair):
-    """m_j W′(h_i)/(r Ω_i) and m_j W′(h_j)/(r Ω_j), never above 0, so that friction heats, kg/m^(d + 2)."""
-    own = i.evenness * slope_by(kernel, i.smoothing_length, pair)
-    other = j.evenness * slope_by(kernel, j.smoothing_length, pair)
-    return j.mass * own, j.mass * other
 
 
 @helper
@@ -141,7 +130,8 @@ class HeatConduction(NamedTuple):
 @helper
 def conduction(strength, own, other, i, j, pair):
     """One neighbour's share of u̇_i by conduction, W/kg; ``own`` and ``other`` are even slopes."""
-    v = np.sqrt(abs(i.pressure - j.pressure) * mean_volume(i, j))
+    _, volume = approach(i, j, pair)
+    v = np.sqrt(abs(i.pressure - j.pressure) * volume)
     both = own * i.specific_volume + other * j.specific_volume
     return 0.5 * strength * v * (i.thermal_energy - j.thermal_energy) * both * pair.r
 
@@ -168,9 +158,10 @@ class FastestSignal(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """The faster of what is known and a neighbour's, m/s."""
-        own = slope_by(self.kernel, i.smoothing_length, pair)
-        other = slope_by(self.kernel, j.smoothing_length, pair)
-        between = i.sound + j.sound - 3.0 * approach(pair)
+        own = slope_by(self.kernel, i.inverse_length, pair)
+        other = slope_by(self.kernel, j.inverse_length, pair)
+        mu, _ = approach(i, j, pair)
+        between = i.sound + j.sound - 3.0 * mu
         return max(total, where(own + other < 0.0, between, 0.0))
 
     def join(self, a, b):

@@ -54,6 +54,6 @@ class ChangingSoftening(NamedTuple):
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        own = i.softening_change * slope_by(self.kernel, i.smoothing_length, pair)
-        other = j.softening_change * slope_by(self.kernel, j.smoothing_length, pair)
+        own = i.softening_change * slope_by(self.kernel, i.inverse_length, pair)
+        other = j.softening_change * slope_by(self.kernel, j.inverse_length, pair)
         return scale(pair.x_ij, own + (j.mass / i.mass) * other)

@@ -11,6 +11,9 @@ LENGTH = OF_SCENE[0]
 
 LISTED_LENGTH = Field("listed_length", "m", "smoothing length when the neighbour list was built")
 
+INVERSE_LENGTH = Field("inverse_length", "1/m", "one over the smoothing length of a gas", image=Same)
+"""A pair's forces would else divide by h once for each neighbour."""
+
 UNEQUAL = Field(
     "unequal",
     "kg",
@@ -44,7 +47,7 @@ SHARE = Field(
 OF_SWITCH = (EARLIER, SHOCKED, SHARE)
 """What their work fills where viscosity is not the same everywhere."""
 
-OF_GASES = (LENGTH, LISTED_LENGTH, UNEQUAL, EVENNESS, SOUND)
+OF_GASES = (LENGTH, INVERSE_LENGTH, LISTED_LENGTH, UNEQUAL, EVENNESS, SOUND)
 """What their work fills."""
 
 

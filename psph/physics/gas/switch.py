@@ -52,7 +52,7 @@ class FlowOfGas(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take a neighbour."""
-        weight = -j.mass * i.specific_volume * slope_by(self.kernel, i.smoothing_length, pair)
+        weight = -j.mass * i.specific_volume * slope_by(self.kernel, i.inverse_length, pair)
         return take_rate(total, pair, pair.u_ij, weight, weight)
 
     def finish_value(self, total, i, kernel):
