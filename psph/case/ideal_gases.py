@@ -9,7 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from psph.acts import BODIES, FLUIDS, FRAME, IDEAL_GASES, MIXED, SOILS, SOLIDS, UPDATED, speaks_for
 from psph.case.findings import Finding
-from psph.case.keys import AXES, key
+from psph.case.keys import AXES, SIDES, key
 from psph.case.matter import RELAXED, FreeMatter, relaxed_findings
 from psph.case.place_formulas import RADIUS, Formula, names_in
 from psph.case.schemes import GAS
@@ -33,7 +33,7 @@ REPELLING = ("wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic", "g
 
 HEXAGONAL = "hexagonal"
 
-OF_SITES = ("shape", "density", "start", "stretch", "spacing", "jitter")
+OF_SITES = ("shape", "density", "start", "stretch", "spacing", "jitter", "inflow")
 """Keys of a gas that starts on sites, and not from a file."""
 
 
@@ -111,6 +111,16 @@ class IdealGas(FreeMatter):
         gt=0,
     )
 
+    inflow: Literal[SIDES] | None = key(
+        "side of the domain through which it goes on coming in as it does at the start: numbers for density, "
+        "velocity and pressure or heat, a box that begins there, on the lattice",
+        None,
+        otherwise="none",
+    )
+    outflow: Literal[SIDES] | None = key(
+        "side of the domain through which it leaves, faster than sound", None, otherwise="none"
+    )
+
     viscosity: ClassVar = 0.0
     rheology: ClassVar = None
     equation_of_state: ClassVar = None
@@ -144,6 +154,8 @@ class IdealGas(FreeMatter):
             for where, value, says in gas._formulas(space.dimensions):
                 yield (*here, *where), value, says
             yield from relaxed_findings(case, here, gas)
+            for where, value, says in gas._inflow(space.dimensions):
+                yield (*here, *where), value, says
             finer = gas.finer(space.spacing)
             if gas.start == RELAXED and finer > 1:
                 yield (
@@ -200,6 +212,27 @@ class IdealGas(FreeMatter):
         if self.shape.is_placed or self.shape.form_name not in fits:
             says = f"moves particles within a {' or '.join(fits)} alone; give such a shape, or remove this"
             yield ("stretch",), self.stretch, says
+
+    def _inflow(self, dimensions: int) -> Iterator[Finding]:
+        """Sides that are not there, and what comes in otherwise than layer by layer, each as the one before."""
+        told = {name: getattr(self, name) for name in ("inflow", "outflow")}
+        missing = [name for name, side in told.items() if side and AXES.index(side[0]) >= dimensions]
+        for name in missing:
+            yield (name,), told[name], f"there is no such side in {dimensions}D; give another"
+        if missing or self.inflow is None or self.shape is None:
+            return
+        axis, sign = AXES.index(self.inflow[0]), 1.0 if self.inflow.endswith("lower") else -1.0
+        told = self.density, self.pressure, self.thermal_energy, *(self.velocity or ())
+        along = [0.0 if isinstance(one, str) else sign * one for one in self.velocity or ()]
+        if any(isinstance(one, str) for one in told) or self.velocity_gradient or self.stretch:
+            yield ("inflow",), self.inflow, "comes in the same everywhere; give numbers in place of formulas"
+        elif not along or along[axis] <= 0.0 or any(v for d, v in enumerate(along) if d != axis):
+            says = "needs a velocity straight in through that side, above 0; give one"
+            yield ("velocity",), self.velocity, says
+        if self.start != "lattice" or self.jitter:
+            yield ("inflow",), self.inflow, 'comes layer by layer; leave "start" and "jitter" out'
+        if self.shape.is_placed or self.shape.form_name != "box":
+            yield ("shape",), ..., "what comes in starts in a box; give one"
 
     @property
     def is_even(self) -> bool:

@@ -24,6 +24,7 @@ from psph.physics.gas.state import (
 from psph.scene.mirrors import distances
 from psph.scene.particles import settled_at
 from psph.scene.parts.gas import GasPart
+from psph.scene.parts.gas_sides import sides_of
 from psph.scene.sites import sites_within
 from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
@@ -56,8 +57,9 @@ class IdealGases(Kind):
 
     @property
     def keeps_energy(self) -> bool:
-        """Not where mirrors that move do work."""
-        return not any(plane.motion for plane in self.scene.layout.mirror_planes)
+        """Not where mirrors that move do work, or gas comes or goes."""
+        moved = any(plane.motion for plane in self.scene.layout.mirror_planes)
+        return not moved and not sides_of(self.scene.layout, self.parts)
 
     may_save = (LENGTH, HEAT, SOUND, SHARE)
     is_stiff = False
@@ -185,8 +187,9 @@ class IdealGases(Kind):
         gamma = np.ones(groups)
         gamma[[part.number for part in self.parts]] = [part.table.gamma for part in self.parts]
         told = (part for part in self.parts if part.start.gas.pressure is not None)
+        sides = sides_of(self.scene.layout, self.parts)
         pressures = {part.number: part.start.pressure for part in told}
-        yield Gases(rank, gamma, pressures, rank.plan.planned[self.name], self.least)
+        yield Gases(rank, gamma, pressures, rank.plan.planned[self.name], self.least, sides)
 
     def forecast(self, plan) -> Iterator[tuple[str, Settings | None]]:
         """The step that sound lets each gas have at rest, and whether its lattice keeps its order."""

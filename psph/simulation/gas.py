@@ -1,7 +1,7 @@
 """Ideal gases on a rank: smoothing lengths, density and pressure before the sums over pairs, the longest step
 and the books after them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -20,7 +20,9 @@ from psph.physics.gas.state import (
     SOUND,
     UNEQUAL,
 )
+from psph.scene.parts.gas_sides import GasSide
 from psph.simulation.gas_shares import find_shares, shares_of
+from psph.simulation.gas_streams import Streams
 from psph.simulation.lengths import NONE, OUTGROWN, SWOLLEN, Lengths, Numbers, find_lengths, find_state
 from psph.simulation.near_rows import AXES, SeenRows, images_in, rooms_for, table_of
 from psph.smoothing import unit_kernel
@@ -65,7 +67,8 @@ class Gases(Work):
 
     ``gamma`` holds γ of each group; ``pressures`` give that of the start, Pa (n,), at places (n, dim), by the
     groups of which the case tells it.  ``pace`` is that of the plan, the same on every rank.  ``least`` is
-    the share of the viscosity where nothing shocks, None where particles have no shares.
+    the share of the viscosity where nothing shocks, None where particles have no shares; through ``sides`` of
+    the domain gas comes and goes.
     """
 
     name = "ideal_gases"
@@ -77,15 +80,25 @@ class Gases(Work):
         pressures: Mapping[int, Callable[[np.ndarray], np.ndarray]],
         pace: Pace,
         least: float | None,
+        sides: Sequence[GasSide] = (),
     ):
         scene, self._plan, self._store, self._domain, _ = rank
         self._gamma, self._pressures, self._pace = gamma, pressures, pace
         self._least = least
+        self.streams, self._names = Streams(sides, self._domain), [one.name for one in scene.species]
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
         periods = (*scene.layout.periods, *(None,) * (AXES - scene.dimensions))
         self._room, self._nearer = np.zeros(0, np.uint64), empty(0, 0)
         self._asked = Numbers(scene.dimensions, target, kernel, kernel.support, periods)
+
+    def begin(self) -> None:
+        """Where the first layers of what comes in stand."""
+        self.streams.begin()
+
+    def passed(self) -> Iterator[str]:
+        """What has come in and gone out."""
+        yield from self.streams.passed(self._names)
 
     def settle(self) -> None:
         """New lists: room for rows of those alone that are close, which these are part of."""
@@ -150,6 +163,10 @@ class Gases(Work):
             heat = pressure(position[own]) / ((self._gamma[number] - 1.0) * density[own])
             for name in (HEAT.name, PREDICTED):
                 store[name][inner][own] = heat
+        for side in self.streams.sides:
+            if side.speed > 0.0 and side.group in self._pressures:
+                for name in (HEAT.name, PREDICTED):
+                    self.streams.even(side, store[name][inner])
 
     def press(self) -> None:
         """Pressure and speed of sound as the forces read them; raises Unsized where there is no heat left."""
@@ -169,6 +186,7 @@ class Gases(Work):
     def after_sums(self, time: float, dt: float) -> None:
         """The largest of what limits the next step, over all ranks, and the shares of viscosity in it."""
         store, inner = self._store, self._store.inner
+        self.streams.hold()
         if self._least is not None:
             self._each(find_shares, self._least, self._asked.support, dt, shares_of(store))
         per_length = 1.0 / store[LENGTH.name][inner]
@@ -201,12 +219,13 @@ class Gases(Work):
         return rows.begin.nbytes + rows.lengths.nbytes + 4 * int(rows.lengths[: self._store.owned].sum())
 
     def state(self) -> dict:
-        """What sets the next step."""
-        return {self.name: self._pace.tops}
+        """What sets the next step, and what has come and gone."""
+        return {self.name: [self._pace.tops, self.streams.state()]}
 
     def restore(self, state: dict) -> None:
         """Go on from there."""
-        self._pace.tops = state[self.name]
+        self._pace.tops, streams = state[self.name]
+        self.streams.restore(streams)
 
     def _each(self, loop, *args) -> None:
         in_threads(loop, self._store.low, self._store.low + self._store.owned, *args)
@@ -217,10 +236,14 @@ class Gases(Work):
 
 
 def check_lists(simulation) -> None:
-    """Whether lists reach far enough for where the step has taken particles, and mirrors."""
+    """Whether lists reach far enough for where the step has taken particles, and mirrors; where they do not
+    gas comes and goes."""
     simulation.neighbourhood.move_mirrors(simulation.then)
+    streams = simulation.engine.of(Gases.name).streams
     with simulation.ledger("skin"):
-        simulation.listed = simulation.neighbourhood.skin.reach()
+        simulation.listed = not streams.due(simulation.then) and simulation.neighbourhood.skin.reach()
+    if not simulation.listed:
+        streams.renew(simulation.then, simulation.population)
 
 
 def find_sizes(simulation) -> None:

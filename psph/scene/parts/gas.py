@@ -18,6 +18,7 @@ from psph.physics.gas.state import HEAT, LENGTH, OfHeat
 from psph.scene.hexagonal import sites_of, steps_of
 from psph.scene.lattice import TOLERANCE
 from psph.scene.parts.gas_profile import GasProfile
+from psph.scene.parts.gas_sides import side_faults
 from psph.scene.parts.part import Part
 from psph.scene.shapes import Corner
 
@@ -128,8 +129,8 @@ class GasPart(Part):
         yield from ()
 
     def faults(self, layout: Any) -> Iterator[str]:
-        """None."""
-        yield from ()
+        """Sides through which it cannot come or go."""
+        yield from side_faults(layout, self)
 
 
 def gas_part(case: Case, key: str, gas: IdealGas) -> tuple[type[GasPart], IdealGas, dict[str, Any]]:
@@ -210,6 +211,7 @@ class GivenPart(GasPart):
 
     def faults(self, layout: Any) -> Iterator[str]:
         """A line for the first of its particles outside the domain."""
+        yield from super().faults(layout)
         slack, begun = TOLERANCE * layout.spacing, self.begun
         for d, x in enumerate(begun.position.T):
             low, up = layout.lower[d], layout.upper[d]

@@ -1,0 +1,137 @@
+"""Gas that comes in through a side of the domain and leaves through another."""
+
+import numpy as np
+import pytest
+from gauging import start
+
+from psph.case import CaseError, load
+from psph.scene import Scene, check
+
+WIND = """
+scheme = "gas"
+
+[space]
+dimensions = 1
+spacing = 0.02
+lower = [0.0]
+upper = [2.0]
+
+[time]
+end = 20.0
+
+[ideal_gases.wind]
+shape.box = { lower = [0.0], upper = [2.0] }
+density = 1.3
+pressure = 0.8
+velocity = [3.0]
+inflow = "x.lower"
+outflow = "x.upper"
+"""
+
+TUNNEL = WIND.replace("dimensions = 1", 'dimensions = 2\nperiodic = ["y"]')
+for old, new in (("[0.0]", "[0.0, 0.0]"), ("[2.0]", "[2.0, 0.8]"), ("[3.0]", "[3.0, 0.0]")):
+    TUNNEL = TUNNEL.replace(old, new)
+TUNNEL = TUNNEL.replace("spacing = 0.02", "spacing = 0.04")
+
+
+def wind(tmp_path, text, *sets):
+    (tmp_path / "wind.toml").write_text(text)
+    return start(load(tmp_path / "wind.toml", sets))
+
+
+def state(simulation):
+    """x, density, velocity and pressure of all, by place."""
+    simulation.settle_pressure()
+    store = simulation.store
+    x, rho, v, p = (store.shown(name) for name in ("position", "density", "velocity", "pressure"))
+    order = np.argsort(x[:, 0])
+    return tuple(np.array(one)[order] for one in (x[:, 0], rho, v[:, 0], p))
+
+
+def inner(x, *values, deep=0.35):
+    """Values off both sides."""
+    within = (x > deep) & (x < 2.0 - deep)
+    return [one[within] for one in values]
+
+
+@pytest.mark.parametrize(("text", "flows"), [(WIND, 20), (TUNNEL, 3)], ids=["1D", "2D"])
+def test_a_uniform_stream_stays_uniform(tmp_path, text, flows):
+    """To rounding, while so many domains of it flow through; as many particles as at the start are there."""
+    simulation = wind(tmp_path, text)
+    x, *begun = state(simulation)
+    [rho, v, p] = (one.mean() for one in inner(x, *begun))
+    count, end = len(x), flows * 2.0 / 3.0
+    while simulation.time < end:
+        simulation.step(end)
+        assert abs(simulation.store.owned - count) <= 0.1 * count
+    x, *found = state(simulation)
+    for values, first in zip(inner(x, *found), (rho, v, p)):
+        assert np.abs(values / first - 1.0).max() < 1e-8
+    gases = simulation.engine.of("ideal_gases")
+    came, went = gases.streams.came, gases.streams.went
+    assert (
+        came[0] == pytest.approx(flows * count, rel=0.02)
+        and came[0] - went[1] == simulation.store.owned - count
+    )
+    assert len(set(simulation.store.shown("id").tolist())) == simulation.store.owned
+
+
+def test_a_stream_that_is_not_held_or_followed_does_not(tmp_path, monkeypatch):
+    """Without rows that follow it is gone, without what is held its end bursts into the vacuum."""
+    monkeypatch.setattr("psph.simulation.gas_streams.HELD", ())
+    simulation = wind(tmp_path, WIND)
+    while simulation.time < 1.0:
+        simulation.step(1.0)
+    x, rho, v, p = state(simulation)
+    assert np.abs(inner(x, rho)[0] / 1.3 - 1.0).max() > 0.1
+
+
+SHOCK = WIND.replace(
+    "shape.box = { lower = [0.0], upper = [2.0] }", "shape.box = { lower = [0.0], upper = [1.0] }"
+)
+SHOCK = SHOCK.replace('outflow = "x.upper"\n', "").replace("pressure = 0.8", "pressure = 3.0")
+SHOCK += """outflow = "x.upper"
+
+[ideal_gases.thin]
+shape.box = { lower = [1.0], upper = [2.0] }
+density = 1.3
+pressure = 0.8
+velocity = [SPEED]
+outflow = "x.upper"
+"""
+
+
+def left_behind(tmp_path, speed, pressure):
+    """By how much the pressure is off that of what comes in, over the rise of a shock, at the most, 4 s after
+    gas of this pressure stood behind gas of 0.8 Pa: shock, contact and fan have met the outflow."""
+    of_wind = f"ideal_gases.wind.velocity=[{speed}]", f"ideal_gases.wind.pressure={pressure}"
+    simulation = wind(tmp_path, SHOCK.replace("SPEED", f"{speed}"), *of_wind)
+    while simulation.time < 4.0:
+        simulation.step(4.0)
+    x, _, _, p = state(simulation)
+    return np.abs(inner(x, p)[0] - pressure).max() / (pressure - 0.8)
+
+
+def test_a_shock_leaves_with_a_stream_faster_than_sound(tmp_path):
+    """All that is left is the stream that comes in; what leaves slower than sound comes back."""
+    assert left_behind(tmp_path, 3.5, 3.0) < 1e-3
+    assert left_behind(tmp_path, 0.4, 0.9) > 0.3
+
+
+@pytest.mark.parametrize(
+    ("sets", "says"),
+    [
+        (("ideal_gases.wind.velocity=[-1.0]",), "straight in through that side"),
+        (('ideal_gases.wind.density="1 + x"',), "give numbers in place of formulas"),
+        (("ideal_gases.wind.jitter=0.1",), "layer by layer"),
+        (('ideal_gases.wind.inflow="y.lower"',), "there is no such side in 1D"),
+        (('ideal_gases.wind.outflow="z.upper"',), "there is no such side in 1D"),
+        (("ideal_gases.wind.shape.box.lower=[0.1]",), "does not begin there"),
+        (("ideal_gases.wind.shape.box.upper=[0.1]",), "make it deeper"),
+        (('space.periodic=["x"]',), "repeats or is a mirror"),
+    ],
+)
+def test_what_cannot_come_in_is_told_in_a_line(tmp_path, sets, says):
+    (tmp_path / "wind.toml").write_text(WIND)
+    with pytest.raises(CaseError, match=says):
+        check(Scene(load(tmp_path / "wind.toml", sets)))
