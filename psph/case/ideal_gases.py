@@ -214,7 +214,7 @@ class IdealGas(FreeMatter):
             yield ("stretch",), self.stretch, says
 
     def _inflow(self, dimensions: int) -> Iterator[Finding]:
-        """Sides that are not there, and what comes in otherwise than layer by layer, each as the one before."""
+        """Sides that are not there, and what comes in otherwise than layer by layer, all alike."""
         told = {name: getattr(self, name) for name in ("inflow", "outflow")}
         missing = [name for name, side in told.items() if side and AXES.index(side[0]) >= dimensions]
         for name in missing:
