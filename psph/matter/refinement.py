@@ -14,7 +14,7 @@ from psph.scene.shapes import bounds
 from psph.simulation.levels import CORNER, DIVIDED, LENGTH, Resizing
 from psph.work import Rank, Stage, Work
 
-SKINS = {1: 0.4, 2: 0.4, 3: 0.24}
+SKINS = {1: 0.3, 2: 0.3, 3: 0.24}
 """Part of the support by which lists reach farther at the least, by dimensions: how far each particle strays
 counts here, not how far two come nearer.  In 3D longer rows cost more, in 2D new lists."""
 

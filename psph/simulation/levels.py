@@ -32,7 +32,7 @@ LASTS = 0.5
 """Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
 more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
 
-SELDOM = 4
+SELDOM = 2
 """Steps for which the state and the sums serve of those who follow where nobody sees them who leads."""
 
 OF_FORCES = ("acceleration", "density_rate", "density_rate_1", "density_rate_2")

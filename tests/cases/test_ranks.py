@@ -95,6 +95,7 @@ END = {
     "coast/pontoon": 0.05,
     "coast/run_up": 0.03,
     "coast/wave_run_up": 0.03,
+    "refined/block_in_waves": 0.02,
     "refined/dam_break": 0.05,
     "ends/open_poiseuille": 0.15,
     "ends/open_channel": 0.15,
