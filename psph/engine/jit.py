@@ -46,14 +46,16 @@ SOURCES = source_digest()
 """That of the sources which this process has read, whatever is written into them meanwhile."""
 
 
-ALLOCATOR = "--regalloc=pbqp"
-"""How LLVM hands out registers: its own choice copies a third of the pair loop's numbers from one
-register to another, or spills them.  It changes no result."""
+GENERATOR = ("--regalloc=pbqp", "--pre-RA-sched=list-ilp", "--misched-prera-direction=topdown")
+"""How LLVM hands out registers and in which order it computes: its own choice copies a third of the pair
+loop's numbers from one register to another, or keeps more of them waiting than there are registers.  They
+change no result."""
 
 
 def _configure() -> None:
     lean.use()
-    llvm.set_option("psph", ALLOCATOR)
+    for option in GENERATOR:
+        llvm.set_option("psph", option)
     numba.config.CPU_NAME = numba.config.CPU_NAME or llvm.get_host_cpu_name()
     if not numba.config.CPU_FEATURES:
         # 512-bit vectors where the processor has them: LLVM would prefer 256.
