@@ -141,3 +141,11 @@ class NeighbourLists(Table):
         ge=0,
         le=1,
     )
+    least_skin: float | None = key(
+        "that down to which the skin narrows where lists last; it widens up to `skin` where they do not",
+        None,
+        unit="1",
+        otherwise="the skin stays as it is",
+        gt=0,
+        le=1,
+    )

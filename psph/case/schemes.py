@@ -22,6 +22,8 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.summation_density": 0.002,
         "physics.tension_floor": 0.98,
         "physics.background_pressure": "auto",
+        "neighbours.skin": 0.16,
+        "neighbours.least_skin": 0.04,
     },
     PLAIN: {
         "space.kernel": "cubic",

@@ -57,8 +57,9 @@ class Travels(NamedTuple):
 class Domain:
     """The slab of one rank, its ghosts and its neighbour lists.
 
-    ``cutoff`` is the kernel's support and the skin together, m, and follows the largest particle where sizes
-    differ; ``travels`` says what ghosts need;
+    ``cutoff`` is the kernel's support and the widest skin together, m, and follows the largest particle where
+    sizes differ; lists name who is within ``reach``, m, which may be less.  ``travels`` says what
+    ghosts need;
     ``lanes`` is how many entries of a list the pair loop takes at once, None where there is no such loop
     and nothing to list.
     """
@@ -73,6 +74,7 @@ class Domain:
         lanes: int | None = Metres.lanes,
     ):
         self.comm, self.store, self.cutoff = comm, store, cutoff
+        self.reach = cutoff
         self.axis, self.periods = extent.axis, tuple(extent.periods)
         self.lower, self.upper = tuple(extent.lower), tuple(extent.upper)
         self._home = (self.lower, self.upper)
@@ -158,7 +160,7 @@ class Domain:
             self.grid,
             self.starts,
             self.planes,
-            self.cutoff,
+            self.reach,
             self.periods,
             lanes,
             sought,

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,8 @@ NEAR_PLANE = 1.5
 """Cutoffs from a mirror within which particles count as near it: whoever crosses it before new lists is."""
 
 REMEMBERED = (
+    "width",
+    "_served",
     "drifted",
     "_apart",
     "_since",
@@ -40,11 +43,37 @@ REMEMBERED = (
 """What is known of the lists since they were made, and of the step before."""
 
 
+class Bounds(NamedTuple):
+    """Between which widths, m, a skin is chosen, for pairs within ``support`` m in so many ``dimensions``,
+    which a step goes through in so many ``passes``.
+
+    Lists that serve n passes by a skin s, a part of the support, serve as many the longer the wider it is:
+    with the wear σ = s/n a pass costs P (1 + s)^d + R σ/s, P for the pairs within the support, R for new
+    lists.  Both take about as long in the default scheme, so s = √(σ/d) is the best.
+    """
+
+    least: float
+    most: float
+    support: float
+    dimensions: int
+    passes: int
+
+    def wide_enough(self, width: float, served: int) -> float:
+        """The width after lists of this ``width``, m, that have served so many steps: half-way to the best,
+        as each of the last lists may have been the exception."""
+        wear = width / (self.support * served * self.passes)
+        best = self.support * (wear / self.dimensions) ** 0.5
+        return min(max((width * best) ** 0.5, self.least), self.most)
+
+
 class Unlisted:
     """In the place of a skin where no particle looks for neighbours in space: nothing to list."""
 
     farthest = math.inf
     """Nothing bounds how far particles are from where they were listed."""
+
+    def choose(self) -> None:
+        """Nothing reaches anywhere."""
 
     def renew(self) -> None:
         """Nothing changes."""
@@ -52,6 +81,9 @@ class Unlisted:
     def state(self) -> dict[str, float | None]:
         """Nothing is known."""
         return {}
+
+    def reach_as(self, state: dict[str, float | None]) -> None:
+        """Nor does it anywhere else."""
 
     def restore(self, state: dict[str, float | None]) -> None:
         """Nothing was."""
@@ -74,24 +106,39 @@ class Skin:
     squared differ by 4 d_i d_j, d those from the plane.  So images count only where a particle is beyond a
     plane, twice as far as that, √n times as much in a corner of n planes.  No particle is more than
     ``farthest`` m from where it was listed.  The same on every rank.
+    With ``bounds`` the skin is as wide as pays by how long the last lists have served.
     """
 
-    def __init__(self, domain: Domain, width: float, planes: Sequence[Plane] = ()):
-        self.domain, self.width, self._planes = domain, width, planes
+    def __init__(
+        self, domain: Domain, width: float, planes: Sequence[Plane] = (), bounds: Bounds | None = None
+    ):
+        self.domain, self.width, self._planes, self._bounds = domain, width, planes, bounds
         self._nearer = (
             2.0 * len({plane.axis for plane in planes}) ** 0.5
         )  # an image, over how far one is beyond
         self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
         self._before = [0.0, 0.0]
         self.renew()
+        self._served = 0  # there are no lists yet
 
     @property
     def farthest(self) -> float:
         """Bound on how far a particle is from where it was listed, m."""
         return min(PART_OF_CUTOFF * self.domain.cutoff, PART_OF_PERIOD * self._shortest)
 
+    def choose(self) -> None:
+        """How far lists reach that are made now."""
+        if self._bounds is not None and self._served:
+            self._take(self._bounds.wide_enough(self.width, self._served))
+
+    def _take(self, width: float) -> None:
+        """Lists reach so many m beyond the kernel."""
+        self.domain.reach += width - self.width
+        self.width = width
+
     def renew(self) -> None:
         """The lists are new."""
+        self._served = 1
         self.drifted = self._apart = self._since = 0.0
         self._closing: float | None = None
         self._beyond = self._crossing = -math.inf
@@ -100,6 +147,10 @@ class Skin:
     def state(self) -> dict[str, float | None]:
         """All that the next answers rest on, but for the particles."""
         return {name: getattr(self, name) for name in REMEMBERED}
+
+    def reach_as(self, state: dict[str, float | None]) -> None:
+        """Lists reach as far as those did that are known so well."""
+        self._take(state["width"])
 
     def restore(self, state: dict[str, float | None]) -> None:
         """Go on as if the lists had been in use since they were made."""
@@ -123,6 +174,7 @@ class Skin:
             self._add(*before, shift)
             if not self._bounded(dt, speed):
                 return False
+        self._served += 1
         self._since += dt
         self.drifted += self._way(dt, speed)
         return True

@@ -37,6 +37,12 @@ class Straying:
         """Bound on how far a particle is from where it was listed, m."""
         return min(PART_OF_CUTOFF * self.domain.cutoff, PART_OF_PERIOD * self._shortest)
 
+    def choose(self) -> None:
+        """Lists reach by sizes alone."""
+
+    def reach_as(self, state) -> None:
+        """Always so."""
+
     def renew(self) -> None:
         """The lists are new; collective."""
         store, inner = self.domain.store, self.domain.store.inner

@@ -26,7 +26,7 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     widths = (record_width(_rows(scene, plan, recorded(p.neighbour_fields))) for p in plan.passes)
     record = sum(widths) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
-    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2 if plan.passes else 0.0
+    entries = sites_within(scene, _listed(scene)) + (plan.space.lanes - 1) / 2 if plan.passes else 0.0
     listed = (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
     return own, listed + sum(kind.bytes_of_particle(plan) for kind in plan.matter)
 
@@ -74,5 +74,16 @@ def _grid(scene):
 
 
 def _cutoff(scene) -> float:
-    """How far lists reach at the start, m: where sizes differ those of the largest particle."""
-    return max((kind.farthest for kind in kinds_in(scene)), default=0.0) or scene.layout.reach.cutoff
+    """How far lists may reach, m."""
+    return _farthest(scene) or scene.layout.reach.cutoff
+
+
+def _listed(scene) -> float:
+    """How far lists reach at the start, m."""
+    reach = scene.layout.reach
+    return _farthest(scene) or reach.support + reach.first
+
+
+def _farthest(scene) -> float:
+    """How far the largest particle looks at the start, m, where sizes differ, else 0."""
+    return max((kind.farthest for kind in kinds_in(scene)), default=0.0)

@@ -116,7 +116,8 @@ class Layout:
     @property
     def reach(self) -> Reach:
         """How far particles feel and see each other: as far as the part that reaches farthest."""
-        whole = Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
+        lists = self.case.neighbours
+        whole = Reach.uniform(self.kernel, self.smoothing_length, lists.skin, lists.least_skin)
         contact = self.case.physics.contact is not None
         asked = (part.reach(whole, self.spacing, contact) for part in self.parts)
         return max(filter(None, asked), key=attrgetter("support"))

@@ -234,7 +234,7 @@ class Engine:
 
     def take_up(self, saved) -> None:
         """The lists as they were made, then everything as it was when ``saved`` was written."""
-        self.neighbourhood.take_up(saved.state["lower"], saved.state["upper"])
+        self.neighbourhood.take_up(saved.state["lower"], saved.state["upper"], saved.state["skin"])
         saved.fill(self.store)
         for kind in self.kinds:
             kind.restore(saved.state["poses"])

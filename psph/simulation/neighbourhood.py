@@ -8,11 +8,12 @@ from psph.composition.mirrors import with_own_rows
 from psph.composition.reflections import moved
 from psph.fields import APART, WALL
 from psph.parallel.domain import Domain, Extent, Travels
-from psph.parallel.skin import Skin, Unlisted
+from psph.parallel.skin import Bounds, Skin, Unlisted
 from psph.parallel.straying import Straying
 from psph.particles.apart import part
 from psph.particles.neighbours import Neighbours, empty
 from psph.particles.planes import bring_back, check_apart
+from psph.particles.reach import Reach
 from psph.particles.store import Store
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
@@ -41,20 +42,24 @@ class Neighbourhood:
             Travels(plan.ghost_fields, plan.refreshed, _sought(scene, plan), plan.sizes),
             plan.space.lanes if plan.passes else None,
         )
-        self.skin = self._skin(layout.reach.skin)
+        self.skin = self._skin(layout.reach)
         self.wetting = [Wetting(one, plan, store, self.domain, layout.reach) for one in plan.marking]
         self._apart = empty(0, 0)
         self._mirrors, self._lists = self.mirrors, self._apart
         self._columns: dict[tuple[float, ...], tuple[int, int]] = {}
         self.fit()
 
-    def _skin(self, width: float) -> Skin | Straying | Unlisted:
-        """What tells how long lists hold that look ``width`` m beyond the kernel where sizes are the same."""
+    def _skin(self, reach: Reach) -> Skin | Straying | Unlisted:
+        """What tells how long lists hold that reach so far where sizes are the same."""
         if not self.plan.passes:
             return Unlisted()
         if self.plan.sizes is not None:
             return Straying(self.domain, self.plan.sizes, not self.planes and self.plan.sizes.grow)
-        return Skin(self.domain, width, self.plan.planes)
+        bounds, self.domain.reach = None, reach.support + reach.first
+        if reach.least is not None:
+            passes = 1 if self.plan.midway is None else 2
+            bounds = Bounds(reach.least, reach.skin, reach.support, self.store.dimensions, passes)
+        return Skin(self.domain, reach.first, self.plan.planes, bounds)
 
     def valid(self, dt: float, speed: float, acceleration: float, shift: float) -> bool:
         """Whether the lists hold to the end of a step of ``dt`` s, by the largest speed, m/s, acceleration,
@@ -68,12 +73,15 @@ class Neighbourhood:
         ``kinds`` of matter take out what is not to be met.
         """
         bring_back(self.store, self.planes, self.plan.materials.free)
+        self.skin.choose()
         self.domain.rebuild(spent)
         self.sort_out(kinds)
         self.skin.renew()
 
-    def take_up(self, lower, upper) -> None:
-        """List them where they stand, in the domain of an earlier run between these corners, m."""
+    def take_up(self, lower, upper, state) -> None:
+        """List them where they stand, in the domain of an earlier run between these corners, m, as far as it
+        did in this ``state`` of its lists."""
+        self.skin.reach_as(state)
         self.domain.relist(lower, upper)
 
     def sort_out(self, kinds: Iterable[Work]) -> None:

@@ -9,7 +9,7 @@ from stores import store_of
 
 from psph.composition.reflections import ABOVE, BELOW, Plane
 from psph.parallel.domain import Domain, Extent, Travels
-from psph.parallel.skin import Skin
+from psph.parallel.skin import Bounds, Skin
 from psph.particles.drift import bounding_boxes, largest_differences
 
 NAMES = ("position", "listed_position", "predicted_velocity")
@@ -212,6 +212,47 @@ def test_images_in_corners_are_listed_too(dim):
         x = np.array(store["position"])[:, inner]
         assert np.linalg.norm(x[:, 0] + x[:, 1]) >= support
     assert np.linalg.norm(x[:, 0] + x[:, 1]) < support + 0.1 * WIDE  # they hold as long as they can
+
+
+BOUNDS = Bounds(0.25 * WIDE, 2.0 * WIDE, CUTOFF - WIDE, 2, 1)
+"""Between a quarter and twice the width at the start."""
+
+
+@pytest.mark.parametrize(("speed", "width"), [(300.0, BOUNDS.most), (0.01, BOUNDS.least)])
+def test_the_skin_follows_how_long_lists_serve(speed, width):
+    """Neighbours that slide past each other fast widen it, and slow ones narrow it; without bounds it stays."""
+    domain, fixed = domain_of(300, 2), domain_of(300, 2)
+    for one, bounds in ((domain, BOUNDS), (fixed, None)):
+        skin = Skin(one, WIDE, (), bounds)
+        for row, of_own in zip(one.store.rows["predicted_velocity"], (1.0, -1.0)):
+            one.store.data[row] = of_own * speed * (np.arange(one.store.capacity) % 2)
+        for _ in range(40):
+            steps = 0
+            while steps < 2000 and skin.holds(1e-4, speed, 0.0):
+                steps += 1
+            skin.choose()
+            one.rebuild()
+            skin.renew()
+        assert skin.width == pytest.approx(width if bounds else WIDE)
+        assert one.reach - skin.width == pytest.approx(CUTOFF - WIDE)
+        other = Skin(domain_of(300, 2), WIDE, (), bounds)
+        other.reach_as(skin.state())
+        assert other.domain.reach == pytest.approx(one.reach)
+    counts = [int(one.lists.lengths[: one.store.owned].sum()) for one in (domain, fixed)]
+    assert counts[0] != counts[1] and (counts[0] > counts[1]) == (width > WIDE)
+
+
+@pytest.mark.parametrize(("dimensions", "wear"), [(2, 0.02), (3, 0.05)])
+def test_the_best_width_is_where_lists_and_pairs_cost_least(dimensions, wear):
+    """That of (1 + s)^d + wear/s, as long as s is small."""
+    bounds = Bounds(1e-6, 1.0, 1.0, dimensions, 1)
+    width = 0.05
+    for _ in range(60):
+        width = bounds.wide_enough(width, width / wear)
+    s = np.linspace(0.01, 0.6, 5901)
+    costs = (1.0 + s) ** dimensions + wear / s
+    assert np.interp(width, s, costs) < 1.01 * costs.min()
+    assert np.interp(3.0 * width, s, costs) > 1.03 * costs.min()
 
 
 def test_a_broken_number_ends_them():
