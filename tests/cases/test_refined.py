@@ -117,6 +117,25 @@ def test_still_water_has_no_step_of_pressure_at_the_border(factor, tmp_path):
     assert set(level) == set(range(factor.bit_length()))
 
 
+def stirred(folder, lower, upper):
+    """Root mean square speed of still water, 20 coarse spacings deep, after half a second, m/s."""
+    text = STILL.replace("FACTOR", "2").replace("lower = [0.5, 0.0]", f"lower = [0.5, {lower:g}]")
+    simulation = start(draft(folder, text.replace("upper = [1.5, 0.5]", f"upper = [1.5, {upper:g}]")))
+    while simulation.time < 0.5:
+        simulation.step(0.5)
+    _, v, _, m, _ = leading(simulation)
+    return np.sqrt((m * (v**2).sum(axis=1)).sum() / m.sum())
+
+
+@LONG
+def test_what_stirs_still_water_at_a_border_is_that_those_who_follow_drift(tmp_path, monkeypatch):
+    """A limit of docs/refine.md: 4.6 mm/s; in a region without floor and surface 0.5, with followers held 0.8."""
+    inside, across = stirred(tmp_path, 0.3, 0.7), stirred(tmp_path, -0.2, 1.2)
+    monkeypatch.setattr(levels.Resizing, "advance", lambda self, time, dt, largest_speed: None)
+    held = stirred(tmp_path, -0.2, 1.2)
+    assert across > 3.0 * max(inside, held)
+
+
 def reflected(folder, monkeypatch, order):
     """What comes back of a pulse of sound, ten spacings wide, that has gone into a finer part, over it."""
     monkeypatch.setattr(levels, "ORDER", order)
