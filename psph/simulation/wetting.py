@@ -34,7 +34,7 @@ class Wetting:
             np.zeros(s.owned, bool),
             DryRows(lists.lengths.copy(), np.zeros(s.owned, bool)),
         )
-        safe, wet = self.reach.support - self.reach.skin, s[self.effect.marks.name]
+        safe, wet = 2.0 * self.reach.support - self.domain.reach, s[self.effect.marks.name]
         self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
         self._each(find_resting, s.group, materials.free, self._rows.rest)
