@@ -145,7 +145,7 @@ ON_THE_COMMAND_LINE = {
     "resume drop": "drop: there is no such folder: give the folder that a run has written",
     "plot drop.toml": "drop.toml: the folder of a run holds one file of frames (.h5), here: none; give the folder "
     "that psph wrote to",
-    "explain drop.toml --ranks 100": "100 ranks for 35 planes of cells: use at most 35 ranks",
+    "explain drop.toml --ranks 100": "100 ranks for 32 planes of cells: use at most 32 ranks",
 }
 
 
