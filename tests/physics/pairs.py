@@ -79,6 +79,7 @@ def view(n=2, dim=2, seed=3):
         unequal=np.resize((0.01, -0.02, 0.03), n),
         evenness=np.resize((0.9, 1.1, 1.3), n),
         sound=np.resize((50.0, 47.0, 62.0), n),
+        inverse_length=np.resize((1.0 / H, 0.9 / H, 1.2 / H), n),
         softening_change=np.resize((0.2, 0.5, 0.3), n),
         thermal_energy=np.resize((1e3, 2e3, 5e2), n),
         facing=tuple(np.resize((0.0, 0.6 if d else 0.8, 0.0), n) for d in range(dim)),

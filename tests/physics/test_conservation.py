@@ -41,7 +41,7 @@ from psph.physics.fluid.viscosity import (
     PairDamping,
 )
 from psph.physics.fluid.weight import Steady
-from psph.physics.gas.pressure import GasPressure
+from psph.physics.gas.pressure import GasPressure, OfUnlikeMasses
 from psph.physics.gas.shocks import KernelViscosity
 from psph.physics.gas.softening import ChangingSoftening
 from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
@@ -102,7 +102,7 @@ def in_a_scene(effect, dim):
         "ContactLine": lambda: HeldByWalls(0.1, BLUNT, 1.0),
         "ContactAngle": lambda: AtAngle(0.1, 0.3, BLUNT, 1.0, 1e9),
         "AtRememberedAngle": lambda: AtRememberedAngle(0.1, 0.3, BLUNT, 1.0, 1e9),
-        "GasPressure": lambda: GasPressure(kernel("wendland-c2", 1.0, dim)),
+        "GasPressure": lambda: GasPressure(OfUnlikeMasses(kernel("wendland-c2", 1.0, dim))),
         "ShockViscosity": lambda: KernelViscosity(1.0, 2.0, kernel("wendland-c2", 1.0, dim)),
         "ChangingSoftening": lambda: ChangingSoftening(kernel("wendland-c2", 1.0, dim)),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
