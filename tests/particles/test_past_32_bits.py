@@ -100,7 +100,7 @@ def test_lists_name_columns_past_2_31(near_and_far):
         domain.grid,
         domain.starts,
         domain.planes,
-        domain.cutoff,
+        domain.reach,
         domain.periods,
         domain.lanes,
         None if domain.sought is None else far.store[domain.sought],
