@@ -119,6 +119,7 @@ class Skin:
         self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
         self._before = [0.0, 0.0]
         self.renew()
+        self._support = domain.reach - width
         self._served = 0  # there are no lists yet
 
     @property
@@ -133,8 +134,8 @@ class Skin:
 
     def _take(self, width: float) -> None:
         """Lists reach so many m beyond the kernel."""
-        self.domain.reach += width - self.width
-        self.width = width
+        # By no sum of earlier changes, whose rounding a restart would not have.
+        self.domain.reach, self.width = self._support + width, width
 
     def renew(self) -> None:
         """The lists are new."""

@@ -264,10 +264,15 @@ def test_the_coarsest_are_neither_born_nor_die(tmp_path):
     assert "level 1" in list(work.passed())[1]
 
 
-def together(folder):
-    """The stream in which particles are born and die, as all ranks read it."""
+def flowing(folder):
+    """The stream in which particles are born and die."""
+    return stream(folder, length=0.6, width=0.3, lower=0.3, upper=0.6, speed=2.0)
+
+
+def together(folder, write):
+    """The case that ``write(folder)`` puts there, as all ranks read it."""
     if MPI.COMM_WORLD.rank == 0:
-        stream(folder, length=0.6, width=0.3, lower=0.3, upper=0.6, speed=2.0)
+        write(folder)
     MPI.COMM_WORLD.Barrier()
     case = load(folder / "case.toml")
     scene = Scene(case)
@@ -277,7 +282,7 @@ def together(folder):
 
 @pytest.mark.mpi(min_size=2)
 def test_same_bits_where_particles_are_born_and_die(mpi_tmp_path):
-    case = together(mpi_tmp_path)
+    case = together(mpi_tmp_path, flowing)
     many, single = (steps(case, comm, 40) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
     assert single.engine.of("refine").counts[1, levels.BORN] > 0
     (rows, *_), (alone, *_) = state(many), state(single)
@@ -287,7 +292,7 @@ def test_same_bits_where_particles_are_born_and_die(mpi_tmp_path):
 @pytest.mark.mpi(min_size=2)
 def test_goes_on_on_one_rank_where_many_stopped(mpi_tmp_path):
     """Amid the life of lists and of who is followed."""
-    case = together(mpi_tmp_path)
+    case = together(mpi_tmp_path, flowing)
     simulation = steps(case, MPI.COMM_WORLD, 36)
     lists = simulation.domain.rebuilds
     simulation.step()

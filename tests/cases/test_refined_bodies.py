@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases.test_refined import leading
+from cases.test_refined import leading, together
 from drafts import draft, refusal
 from gauging import start
 from mpi4py import MPI
@@ -11,10 +11,8 @@ from runs.resuming import go_on_alike, keep, steps, taken_up
 
 from psph.case import load
 from psph.output.gauges import gauges_of
-from psph.runs.setup import compile_ahead
 from psph.scene import Scene
 from psph.simulation import levels
-from psph.simulation.plan import make_plan
 
 BOX = """
 time.end = 0.4
@@ -140,20 +138,14 @@ def test_a_box_goes_through_a_border_with_its_stream(spin, tmp_path):
     assert whole[0] == pytest.approx(2.0 * (m.sum() + box), rel=2e-3)
 
 
-def together(folder):
-    """The paddle and the float, as all ranks read them."""
-    if MPI.COMM_WORLD.rank == 0:
-        draft(folder, DRIVEN)
-    MPI.COMM_WORLD.Barrier()
-    case = load(folder / "case.toml")
-    scene = Scene(case)
-    compile_ahead(scene, make_plan(scene), MPI.COMM_WORLD)
-    return case
+def driven(folder):
+    """The paddle and the float."""
+    return draft(folder, DRIVEN)
 
 
 @pytest.mark.mpi(min_size=2)
 def test_same_bits_with_a_paddle_and_a_float(mpi_tmp_path):
-    case = together(mpi_tmp_path)
+    case = together(mpi_tmp_path, driven)
     many, single = (steps(case, comm, 240) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
     assert single.engine.of("refine").counts[1, levels.BORN] > 0
     (rows, *_), (alone, *_) = state(many), state(single)
@@ -163,7 +155,7 @@ def test_same_bits_with_a_paddle_and_a_float(mpi_tmp_path):
 
 @pytest.mark.mpi(min_size=2)
 def test_a_paddle_and_a_float_go_on_on_one_rank(mpi_tmp_path):
-    case = together(mpi_tmp_path)
+    case = together(mpi_tmp_path, driven)
     simulation = steps(case, MPI.COMM_WORLD, 45)
     written = keep(simulation, case, mpi_tmp_path)
     MPI.COMM_WORLD.Barrier()

@@ -3,50 +3,17 @@
 import numpy as np
 import pytest
 from gauging import start
+from physics.test_gas import cloud
 
 from psph.case import load
 from psph.simulation.gas import Gases, find_sizes
 from psph.simulation.near_rows import NEARER
-
-CLOUD = """
-scheme = "gas"
-
-[space]
-dimensions = 2
-spacing = 0.1
-
-[time]
-end = 1.0
-
-[ideal_gases.light]
-shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
-density = 1.0
-pressure = 1.0
-velocity_gradient = [[-0.7, 0.9], [0.2, 0.4]]
-velocity_center = [0.3, 0.1]
-jitter = 0.3
-
-[ideal_gases.heavy]
-shape.box = { lower = [1.0, 0.0], upper = [1.6, 1.0] }
-density = 4.0
-pressure = 2.0
-gamma = 1.6666666666666667
-velocity = [-0.5, 0.3]
-jitter = 0.3
-"""
-"""Two gases of unlike masses in disorder, which run into each other in an open domain."""
 
 MIRRORED = (
     "space.lower=[0.0, 0.0]",
     "space.upper=[1.6, 1.0]",
     'space.symmetry=["x.lower", "x.upper", "y.lower", "y.upper"]',
 )
-
-
-def cloud(tmp_path, *sets):
-    path = tmp_path / "cloud.toml"
-    path.write_text(CLOUD)
-    return start(load(path, sets))
 
 
 def rows(lists, count):
