@@ -49,14 +49,15 @@ class Streams:
 
     def even(self, side: GasSide, values: np.ndarray) -> None:
         """Give all that is held before a side the largest of ``values`` (owned,) in the innermost layers of
-        it: at the start what stands at a side lacks neighbours; collective."""
+        it, if there is anything: at the start what stands at a side lacks neighbours; collective."""
         store = self._domain.store
         depth = side.depth(store[POSITION.name][side.axis][store.inner])
         held = self.held(side)
         [found] = largest(
             self._domain.comm, [values[held & (depth > side.deep - 1.5 * side.step)].max(initial=0.0)]
         )
-        values[held] = found
+        if found > 0.0:
+            values[held] = found
 
     def hold(self) -> None:
         """Nothing accelerates or heats what is held."""

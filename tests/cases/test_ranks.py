@@ -133,6 +133,7 @@ END = {
     "gas/gresho": 0.05,
     "gas/kelvin_helmholtz": 0.03,
     "gas/colliding_discs": 0.04,
+    "gas/cloud_in_wind": 0.02,
     "gravity/self_gravitating_drop": 400.0,
     "gravity/collapse": 1.0,
     "machines/rheometer": 5e-3,

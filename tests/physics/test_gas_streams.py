@@ -2,10 +2,15 @@
 
 import numpy as np
 import pytest
+from cases.measures import CASES
 from gauging import start
+from mpi4py import MPI
 
 from psph.case import CaseError, load
+from psph.runs.setup import compile_ahead
 from psph.scene import Scene, check
+from psph.simulation.plan import make_plan
+from psph.theory.riemann import GasState, riemann
 
 WIND = """
 scheme = "gas"
@@ -135,3 +140,27 @@ def test_what_cannot_come_in_is_told_in_a_line(tmp_path, sets, says):
     (tmp_path / "wind.toml").write_text(WIND)
     with pytest.raises(CaseError, match=says):
         check(Scene(load(tmp_path / "wind.toml", sets)))
+
+
+COARSE = "space.spacing=0.025", "ideal_gases.cloud.spacing=0.008333333333333333"
+
+
+def test_a_wind_meets_a_cloud_at_the_pressure_that_theory_has(tmp_path):
+    """While its face is as good as flat; neither shocks nor shreds lose momentum across."""
+    case = load(f"{CASES}/gas/cloud_in_wind.toml", COARSE)
+    simulation, wind, cloud = start(case), case.ideal_gases["wind"], case.ideal_gases["cloud"]
+    left = GasState(wind.density, wind.pressure, wind.velocity[0])
+    found = riemann(left, GasState(cloud.density, cloud.pressure), wind.gamma)
+    while simulation.time < 0.024:
+        simulation.step(0.024)
+    simulation.settle_pressure()
+    store = simulation.store
+    x, v, p, mass = (store.shown(name) for name in ("position", "velocity", "pressure", "mass"))
+    assert p[np.abs(x[:, 1]) < 0.03].max() == pytest.approx(found.pressure, rel=0.05)
+    assert np.abs(mass @ v[:, 1]) < 1e-12 * (mass @ np.abs(v[:, 0]))
+
+
+def test_a_gas_that_is_held_at_a_side_keeps_what_it_has_where_none_stands_behind_it(tmp_path):
+    """As those few do by which loops are compiled: they have a step then."""
+    scene = Scene(load(f"{CASES}/gas/cloud_in_wind.toml", COARSE))
+    assert compile_ahead(scene, make_plan(scene), MPI.COMM_SELF) > 0.0

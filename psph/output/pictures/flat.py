@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
@@ -120,6 +121,8 @@ class Flat:
 
     def fill(self, axes: Axes, frame: dict, scale: Scale) -> None:
         """What fills the page of a scene in a plane: particles."""
+        if scale.on_dark:
+            axes.set_facecolor(matplotlib.colormaps[scale.colours](0))
         fluid, width = frame["kind"] != WALL, frame["width"]
         places = frame["position"][:, [self.across, self.up]]
         whole = np.zeros(len(fluid), bool)

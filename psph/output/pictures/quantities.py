@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.fields import FLUID, GAS, PRESSURE
+from psph.fields import DENSITY, FLUID, GAS, PRESSURE
 from psph.output.errors import NotThere
 from psph.output.pictures.groups import matter_of, spreading_of, wholes_called
 from psph.output.pictures.vorticity import vorticity
@@ -27,7 +27,7 @@ class Quantity(NamedTuple):
     middle of its colours.  ``names`` has those of the fluids where it counts them, ``whole`` the
     word for what is moved as a whole, which shares a colour.  ``of_flow``: where there are any, the limits
     of the colours are theirs, since stresses of solids beside them are of another size.  ``steep``:
-    its colours go by powers of ten, from dark.
+    its colours go by powers of ten, from dark, where it spans more than one.
     """
 
     name: str
@@ -66,9 +66,9 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
     if field not in saved:
         known = ", ".join([*saved, SPEED, VORTICITY])
         raise NotThere(f"{run.path}: field: {field} is not saved; choose one of {known}")
-    fluid = field == PRESSURE.name
+    fluid, thins_out = field == PRESSURE.name, field == DENSITY.name and LENGTH in saved
     title, unit = field.replace("_", " "), run.unit(field)
-    return Quantity(field, title, unit, (field,), _size_of(field), of_flow=fluid)
+    return Quantity(field, title, unit, (field,), _size_of(field), of_flow=fluid, steep=thins_out)
 
 
 def usual(run: Run, case: dict) -> str:

@@ -1,5 +1,7 @@
 """Pictures: what is drawn where and in which colour, and which files come of it."""
 
+from types import SimpleNamespace
+
 import matplotlib.image
 import numpy as np
 import pytest
@@ -10,7 +12,8 @@ from psph.output.frames import FrameFile
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Slice
 from psph.output.pictures.plot import overview, plot
-from psph.output.pictures.quantities import usual
+from psph.output.pictures.quantities import quantity, usual
+from psph.output.pictures.scale import scale_of
 from psph.output.pictures.show import Show
 from psph.output.reader import Run
 from psph.output.tables import CsvTable
@@ -376,3 +379,17 @@ def test_a_curve_that_keeps_its_value_lies_level_between_numbers_that_differ():
     figure.canvas.draw()
     labels = [label.get_text() for label in axes.get_yticklabels()]
     assert len(set(labels)) == len(labels) > 1
+
+
+@pytest.mark.parametrize(
+    ("fields", "least", "by_powers"),
+    [
+        (("density", "smoothing_length"), 0.05, True),
+        (("density", "smoothing_length"), 0.5, False),  # a refined liquid, or a gas that stays together
+        (("density",), 0.05, False),
+    ],
+)
+def test_the_density_of_what_thins_out_goes_by_powers_of_ten(fields, least, by_powers):
+    run = SimpleNamespace(fields=fields, unit=lambda field: "kg/m3")
+    scale = scale_of(quantity(run, {}, "density"), [np.linspace(least, 2.0, 100)])
+    assert scale.on_dark == by_powers and (not by_powers or scale.norm.vmin < 2.0 * least)
