@@ -3,9 +3,11 @@
 f = f₀ + f₁·t + t·f₂·t over all that lead around, of whatever level, by least squares with the weights V W,
 each by its own smoothing length.  Where they are too few for a term it is left out.  What is linear blurs a
 vortex of five spacings: it loses a tenth of its energy at a border, with terms of second order a hundredth.
+Beside surfaces, floors and walls, where it carries on what is seen on one side, terms fade.
 
 f₀ = Σ_j c_j f_j, where c_j rests on places alone: it is found where lists are made, and serves until new ones
-are.  All move with the flow in between, and a flow that is linear around leaves Σ_j c_j x_jk = 0.
+are.  All move with the flow in between, and a flow that is linear around leaves Σ_j c_j x_jk = 0.  Pressures
+are followed as the depths that they are in their own rows (:mod:`psph.simulation.surface_rows`).
 """
 
 from typing import Any, NamedTuple
@@ -15,6 +17,7 @@ import numpy as np
 from psph.engine.jit import elementwise
 from psph.formula import helper
 from psph.simulation.least_squares import factor, solve
+from psph.simulation.surface_rows import Rows, borne, weighed
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, put, subtract
 
@@ -24,8 +27,14 @@ FLAT = 0.01
 TOO_FEW = 0.05
 """Σ V W of those who lead below which nobody is followed."""
 
-FULL = 0.85
-"""Σ V W below which a surface is near, and terms of second order would reach beyond it."""
+SECOND = 0.95, 1.0
+"""Σ V W between which terms of second order fade: below, a surface or a wall is near, and they would reach
+beyond it."""
+
+FIRST = 0.6, 1.0
+"""Σ V W between which linear terms of the velocity fade into its mean.  A row at a floor or a surface that
+goes faster than the next is otherwise followed by one that goes faster still: in still water 0.4 m deep that
+grows from 1 mm/s to 30 mm/s in two seconds.  Pressures keep theirs: a mean is that of another depth."""
 
 ORDER = 2
 """Of the fit."""
@@ -44,22 +53,25 @@ class Leaders(NamedTuple):
 
 class Weighed(NamedTuple):
     """How they are weighed: by a ``kernel`` with h = 1 m, times ``cell``, dx^d/h^d of every level;
-    ``periods`` in m or None; the ``order`` of the fit."""
+    ``periods`` in m or None; the ``order`` of the fit; what ``rows`` bear below a surface."""
 
     kernel: Any
     cell: float
     periods: tuple
     order: int
+    rows: Rows
 
 
 class Followed(NamedTuple):
-    """Whom each of some particles follows: from ``begin`` (n,) on ``many`` (n,) entries, the ``column`` and
-    the ``share`` c of each.  ``longest`` is the longest row."""
+    """Whom each of some particles follows: from ``begin`` (n,) on ``many`` (n,) entries, the ``column`` of
+    each, its ``share`` c in pressure and density and its share in the ``flow``.  ``longest`` is the longest
+    row."""
 
     begin: np.ndarray
     many: np.ndarray
     column: np.ndarray
     share: np.ndarray
+    flow: np.ndarray
     longest: int
 
 
@@ -76,11 +88,13 @@ class OfLeaders(NamedTuple):
 
 class LevelFit(NamedTuple):
     """Room for a fit: its ``terms`` (n,) 1, t and tt, Σw times their products ``square`` (n, n), and
-    ``share`` (n,), what of Σw times each makes f₀; ``place`` (longest, dim), in spacings, of entries."""
+    ``share`` (n,), what of Σw times each makes f₀, with terms of second order ``second`` (n,); ``place``
+    (longest, dim), in spacings, of entries."""
 
     terms: np.ndarray
     square: np.ndarray
     share: np.ndarray
+    second: np.ndarray
     place: np.ndarray
 
 
@@ -88,7 +102,8 @@ class LevelFit(NamedTuple):
 def room_for(dimensions, order, longest):
     """LevelFit for a fit of an ``order``."""
     n = 1 if order == 0 else 1 + dimensions if order == 1 else (dimensions + 1) * (dimensions + 2) // 2
-    return LevelFit(np.zeros(n), np.zeros((n, n)), np.zeros(n), np.empty((longest, dimensions)))
+    square, place = np.zeros((n, n)), np.empty((longest, dimensions))
+    return LevelFit(np.zeros(n), square, np.zeros(n), np.zeros(n), place)
 
 
 @elementwise
@@ -98,16 +113,13 @@ def follow(first, last, columns, scale, leaders, weighing, anew, followed, state
 
     With ``anew`` whom they follow is found first.  Whoever has too few falls, by ``fall`` (dim,) m/s.
     """
-    column, share = followed.column, followed.share
     room = room_for(len(leaders.position), weighing.order, followed.longest)
     for n in range(first, last):
         k = np.uint64(columns[n])
-        begin = followed.begin[n]
         if anew:
-            followed.many[n] = find(k, scale[n], leaders, weighing, room, column[begin:], share[begin:])
-        many = followed.many[n]
-        if many:
-            take_after(k, column[begin : begin + many], share[begin : begin + many], state)
+            followed.many[n] = find(k, scale[n], leaders, weighing, room, followed, followed.begin[n])
+        if followed.many[n]:
+            take_after(k, followed, n, leaders.length, weighing.rows, state)
         else:
             for d in range(len(fall)):
                 state.velocity[d][k] += fall[d]
@@ -115,9 +127,10 @@ def follow(first, last, columns, scale, leaders, weighing, anew, followed, state
 
 
 @helper
-def find(k, scale, leaders, weighing, room, column, share):
-    """The columns whom ``k`` follows and their shares, by a fit; returns how many there are."""
-    dim = len(leaders.position)
+def find(k, scale, leaders, weighing, room, followed, begin):
+    """The columns whom ``k`` follows and their shares, by a fit, from the entry ``begin`` on; returns how
+    many there are."""
+    dim, column, share = len(leaders.position), followed.column[begin:], followed.share[begin:]
     room.square[:] = 0.0
     many = take_row(k, scale, leaders, leaders.own, weighing, room, column, share, 0)
     many = take_row(k, scale, leaders, leaders.others, weighing, room, column, share, many)
@@ -125,15 +138,34 @@ def find(k, scale, leaders, weighing, room, column, share):
     if total <= TOO_FEW:
         return 0
     factor(room.square, FLAT)
-    count = min(1 + dim, len(room.share)) if total < FULL else len(room.share)
-    solve(room.square, room.share, count)
+    set_shares(dim, total, room)
+    linear = part_of(FIRST, total)
     for n in range(many):
         set_terms(dim, room.place[n], room.terms)
         part = 0.0
-        for one in range(count):
+        for one in range(len(room.share)):
             part += room.share[one] * room.terms[one]
+        followed.flow[begin + np.uint64(n)] = share[n] * (linear * part + (1.0 - linear) / total)
         share[n] *= part
     return many
+
+
+@helper
+def part_of(between, total):
+    """0 where ``total`` is below the first of two numbers, 1 where it is above the second."""
+    return min(max((total - between[0]) / (between[1] - between[0]), 0.0), 1.0)
+
+
+@helper
+def set_shares(dim, total, room):
+    """What of Σw times each term makes f₀ where Σ V W is ``total``, of the ``square`` in factors."""
+    second = part_of(SECOND, total)
+    room.share[:] = 0.0
+    solve(room.square, room.share, min(1 + dim, len(room.share)))
+    if second > 0.0:
+        solve(room.square, room.second, len(room.share))
+        for one in range(len(room.share)):
+            room.share[one] += second * (room.second[one] - room.share[one])
 
 
 @helper
@@ -176,15 +208,21 @@ def set_terms(dim, x, terms):
 
 
 @helper
-def take_after(k, column, share, state):
-    """Column ``k`` gets the sums of ``share`` (n,) times what each ``column`` (n,) has."""
-    density, pressure = 0.0, 0.0
-    for n in range(len(column)):
-        density += share[n] / state.volume[column[n]]
-        pressure += share[n] * state.pressure[column[n]]
+def take_after(k, followed, n, length, rows, state):
+    """Column ``k`` gets the sums of the shares of row ``n`` times what each column that it follows has;
+    ``length`` m is the smoothing length of columns."""
+    density, seen, depth = 0.0, 0.0, 0.0
+    first = followed.begin[n]
+    for entry in range(first, first + followed.many[n]):
+        j, c = followed.column[entry], followed.share[entry]
+        density += c / state.volume[j]
+        seen += c * state.pressure[j]
+        depth += c * weighed(rows, length[j], state.pressure[j])
+    pressure = borne(rows, length[k], depth)
+    density += (pressure - seen) * rows.softness
     state.density[k], state.volume[k], state.pressure[k] = density, 1.0 / density, pressure
     for d in range(len(state.velocity)):
         v = 0.0
-        for n in range(len(column)):
-            v += share[n] * state.predicted[d][column[n]]
+        for entry in range(first, first + followed.many[n]):
+            v += followed.flow[entry] * state.predicted[d][followed.column[entry]]
         state.velocity[d][k] = v

@@ -16,6 +16,7 @@ from psph.particles.neighbours import empty
 from psph.scene.levels import Levels
 from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, LevelLoops
+from psph.simulation.surface_rows import rows_of
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
 from psph.work import Rank, Work
@@ -87,7 +88,7 @@ class Resizing(Work):
         self.counts = np.zeros((self.levels.count, 4), np.int64)
         cell = (scene.spacing / scene.smoothing_length) ** scene.dimensions
         unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
-        self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER)
+        self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene))
         self._follow, self._go = settled(follow), settled(go_along)
         self._lanes = rank.plan.space.lanes
         self.columns = np.zeros(0, np.int64)
@@ -188,7 +189,7 @@ class Resizing(Work):
         seen = alike.lengths[own].astype(np.int64) + others.lengths[own]
         ends, many = np.cumsum(seen), np.zeros(len(own), np.int64)
         size = int(ends[-1]) if len(own) else 0
-        entries = np.empty(size, np.uint32), np.empty(size), int(seen.max(initial=0))
+        entries = np.empty(size, np.uint32), np.empty(size), np.empty(size), int(seen.max(initial=0))
         self._sides = [
             Side(some, Followed((ends - seen)[some], many[some], *entries), every)
             for some, every in ((slice(0, near), 1), (slice(near, None), SELDOM))
