@@ -27,10 +27,10 @@ FLAT = 0.01
 TOO_FEW = 0.05
 """Σ V W of those who lead below which nobody is followed."""
 
-SECOND = 0.85, 0.9
+SECOND = 0.84, 0.86
 """Σ V W between which terms of second order fade: below, a surface or a wall is near, and they would reach
-beyond it.  At a border in a flow Σ V W falls below 0.95 too: a vortex there keeps 0.95 of its energy with
-these, 0.93 with 0.95 to 1."""
+beyond it.  At a border in a flow Σ V W falls below 0.95 too: were terms to fade from 1 to 0.95, a vortex
+would keep 0.93 of its energy there, not 0.95."""
 
 FIRST = 0.6, 0.85
 """Σ V W between which linear terms of the velocity fade into its mean.  A row at a floor or a surface that
