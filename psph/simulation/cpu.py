@@ -116,12 +116,10 @@ class Engine:
     def sum_midway(self, ghosts_are_fresh: bool) -> None:
         """The pass at the middle of a step; ghosts are brought there unless they are."""
         one = self.plan.midway
-        fields = (*one.moved, *(name for name in one.brought if name in self._unsent))
         if ghosts_are_fresh:
             self._sum_all(one)
         else:
-            self._sum_while_refreshing(one, fields)
-        self._unsent.clear()
+            self._sum_while_refreshing(one, self._due_ghosts(one, one.moved))
 
     def drift(self, time: float, dt: float, largest_speed: float) -> None:
         """Drift from the middle of a step to ``time``, its end."""
@@ -158,19 +156,16 @@ class Engine:
     def sum(self, steps: int, time: float, dt: float, ghosts_are_fresh: bool, at_once: bool = False) -> None:
         """Every pass that is due in the step of ``dt`` s after ``steps``, which ends at ``time``, s.
 
-        Slow ones too where they are asked for ``at_once``.
-
-        The first of them brings ghosts up to date unless they are; each then what was written before it.
+        Slow ones too where they are asked for ``at_once``.  The first of them brings ghosts up to date unless
+        they are; each then what was written before it, be it in an earlier step: passes differ in pace.
         """
         for kind in self.kinds:
             kind.before_sums(dt)
         stale = self.plan.renewed if ghosts_are_fresh else self.plan.refreshed
-        written: set[str] = set()
         for one in self.plan.passes:
             if one.midway or not (one.due(steps) or at_once and one.slow):
                 continue
-            fields = stale + tuple(name for name in one.brought if name in written)
-            if fields:
+            if fields := self._due_ghosts(one, stale):
                 self._sum_while_refreshing(one, fields)
             else:
                 self._sum_all(one)
@@ -178,11 +173,16 @@ class Engine:
                 self._add_held_couples()
             if one.settles:
                 self.each(settle_given_pressure, self._rules, self.view(0.0), self.columns())
-            stale, written = (), written.difference(fields) | one.written
-        self._unsent |= written
+            stale, self._unsent = (), self._unsent | one.written
         self.neighbourhood.mark()
         for kind in self.kinds:
             kind.after_sums(time, dt)
+
+    def _due_ghosts(self, one: Pass, stale: tuple[str, ...]) -> tuple[str, ...]:
+        """What ghosts need before a pass: what is ``stale``, and what passes have written since it was sent."""
+        fields = stale + tuple(name for name in one.brought if name in self._unsent and name not in stale)
+        self._unsent.difference_update(fields)
+        return fields
 
     def settle_pressure(self, largest_speed: float, ranges: Iterable[tuple[int, int]] | None = None) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them, of some

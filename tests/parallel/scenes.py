@@ -185,8 +185,9 @@ FAMILIES |= {name: Family(walls=True, **keys) for name, keys in open_scenes.FAMI
 
 
 def _seldom(family: Family) -> dict:
-    """Slow sums, and rates that serve for several steps, are renewed equally seldom."""
-    return {"gather_every": family.gather_every, "damping_every": family.gather_every}
+    """Slow sums are renewed in every so many steps, friction one step sooner, so that both clocks part."""
+    steps = family.gather_every
+    return {"gather_every": steps * family.passes, "damping_every": max(1, steps - 1) * family.passes}
 
 
 def scene(family: Family, seed: int) -> str:

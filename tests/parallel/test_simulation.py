@@ -1,16 +1,19 @@
 """A whole simulation gives the same bits on many ranks as on one, periodic or not."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from gauging import start
 from mpi4py import MPI
 
-from psph.case import Case
+from psph.case import Case, load
 from psph.output.ledger import Ledger
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
 
+VORTEX = Path(__file__).parents[2] / "run" / "cases" / "gresho_default.toml"
 SIDES = {1: (4.0,), 2: (2.0, 1.5), 3: (1.5, 1.2, 1.3)}
 
 
@@ -100,6 +103,19 @@ def test_same_bits_with_sums_of_the_pass_before(gradient, dim, axis):
     assert rebuilds == rebuilds_alone > 2 and end == end_alone
     assert np.array_equal(together, alone) and np.isfinite(together).all()
     assert not np.array_equal(together, run(box(dim, True, axis), COMM)[0])
+
+
+@pytest.mark.parametrize("passes", (1, 2))
+def test_same_bits_where_slow_sums_and_friction_differ_in_pace(passes):
+    """Friction reads sums of neighbours that were gathered some steps before, since when nobody else read them."""
+    paces = f"time={{ end=1.0, passes={passes}, gather_every={3 * passes}, damping_every={5 * passes} }}"
+    case = load(VORTEX, [paces, "space.spacing=0.05"])
+    plan = start(case, MPI.COMM_SELF).plan
+    assert plan.steps_held == 5 and plan.rate_passes == passes
+    together, rebuilds, end = run(case, COMM)
+    alone, rebuilds_alone, end_alone = run(case, MPI.COMM_SELF)
+    assert rebuilds == rebuilds_alone > 1 and end == end_alone
+    assert np.array_equal(together, alone) and np.isfinite(together).all()
 
 
 @pytest.mark.parametrize("periodic", (False, True))
