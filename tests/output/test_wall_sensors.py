@@ -118,6 +118,14 @@ def test_beside_walls_whose_particles_bear_nothing_it_is_the_mean_of_the_fluid(t
     assert kinds == {"dynamic": SensorGauge, "mirror": PointGauge, "penalty": PointGauge}
 
 
+def test_across_a_wall_it_is_the_mean_of_the_fluid_too(tmp_path):
+    """Along the axis a floor bears nothing but rounding, and a little of what presses a plate that is not far."""
+    across = {"one": ((0.7, 0.0), "x", 0.06)}
+    simulation, scene = started(draft(tmp_path, STILL + asked(across)), steps=20)
+    assert [type(gauge) for gauge in gauges_of(scene).values()] == [PointGauge]
+    assert readings(simulation, scene)["one.pressure"] == pytest.approx(9800.0, rel=0.02)
+
+
 HALF = """
 space = { dimensions = 3, spacing = 0.1, lower = [-0.3, 0.0, -0.3], upper = [1.3, 0.8, 1.2], symmetry = ["y.lower"] }
 time.end = 1.0

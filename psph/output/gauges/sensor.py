@@ -15,6 +15,10 @@ from psph.physics.rigid.pose import PLACE
 FINE = 0.5
 """Spacings between the points of a sensor, each of which counts for the rows of sites beside it."""
 
+LEAST = 0.05
+"""Of the faces of sites before a sensor, the part on which the fluid presses along its axis, at the least: less is
+the rounding of what presses a wall that it lies across from both sides."""
+
 
 class SensorFace(NamedTuple):
     """The particles of a wall behind a sensor, by the sites where they start, and their shares in it.
@@ -101,7 +105,7 @@ def face_of(scene, beside, asked, axis: int) -> SensorFace | None:
     inwards = 1 if ahead >= behind else -1
     walls, bearing = turned[..., ::inwards]
     shares, area = _shares(walls, bearing, across, _slopes(layout.kernel, dx, reach, scene.dimensions))
-    if not area > 0.0:
+    if not area > LEAST:
         return None
     shares = _seen_once(layout, sites.first, np.moveaxis(shares[..., ::inwards], -1, axis))
     lowest = (sites.first + 0.5) * dx + layout.lattice.origin
