@@ -186,7 +186,7 @@ def _how_to_give(details: Details, loc: Location, schema: Details) -> str:
         return f"write [{dotted(loc)}] and its keys below it ({meaning})"
     example = ""
     if kind == "tuple_type":
-        example = f" such as {_list_example(schema, details['loc'])}"
+        example = f" such as {_list_example(schema, details)}"
     off = ""
     if isinstance(details["input"], bool) and loc[0] == "physics":
         off = ', or "off" to switch the effect off'
@@ -201,13 +201,15 @@ def _meaning(loc: Location, schema: Details) -> str:
     return node["description"] + (f", {unit}" if unit != "1" else "")
 
 
-def _list_example(schema: Details, loc: Location) -> str:
-    for branch in alternatives(schema, find(schema, loc) or {}):
+def _list_example(schema: Details, details: Details) -> str:
+    for branch in alternatives(schema, find(schema, details["loc"]) or {}):
         for entry in alternatives(schema, branch.get("items", {})):
             if "enum" in entry:
                 return f'["{entry["enum"][0]}"]'
             if "properties" in entry:
                 return "[{ ... }, { ... }]"
+            if entry.get("type") == "string":
+                return f"[{plain(details['input'])}]" if isinstance(details["input"], str) else '["NAME"]'
     return "[0.0, 0.0]"
 
 

@@ -172,6 +172,10 @@ FAULTS = {
         replaced("spacing = 0.1", 'spacing = 0.1\nperiodic = "x"'),
         'space.periodic: "x" is not a list; give a list such as ["x"] (periodic axes)',
     ),
+    "a name in place of a list of names": (
+        WATER + '[gauges.push]\nforce.on = "tank"',
+        'gauges.push.force.on: "tank" is not a list; give a list such as ["tank"] (names of walls',
+    ),
     "one perturbation in place of a list": (
         WATER + "[perturbations]\nposition = [0.0, 0.0]",
         "perturbations: { ... } is not a list; give a list such as [{ ... }, { ... }] (kicks",
