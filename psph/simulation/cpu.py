@@ -179,7 +179,7 @@ class Engine:
             kind.after_sums(time, dt)
 
     def _due_ghosts(self, one: Pass, stale: tuple[str, ...]) -> tuple[str, ...]:
-        """What ghosts need before a pass: what is ``stale``, and what passes have written since it was sent."""
+        """What ghosts need before a pass: what is ``stale``, and what passes wrote since it was sent."""
         fields = stale + tuple(name for name in one.brought if name in self._unsent and name not in stale)
         self._unsent.difference_update(fields)
         return fields

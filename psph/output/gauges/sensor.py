@@ -16,8 +16,8 @@ FINE = 0.5
 """Spacings between the points of a sensor, each of which counts for the rows of sites beside it."""
 
 LEAST = 0.05
-"""Of the faces of sites before a sensor, the part on which the fluid presses along its axis, at the least: less is
-the rounding of what presses a wall that it lies across from both sides."""
+"""Of the faces of sites before a sensor, the part on which the fluid presses along its axis, at the least:
+less is the rounding of what presses a wall that it lies across from both sides."""
 
 
 class SensorFace(NamedTuple):
