@@ -237,7 +237,7 @@ def swung(folder, off):
 @LONG
 @pytest.mark.parametrize("off", [0.0, 0.02, 0.04])
 def test_a_wave_through_borders_at_its_nodes_keeps_what_one_spacing_keeps(off, tmp_path):
-    """One spacing of 0.08 m keeps 0.90, of 0.04 m 0.95; through borders 0.91 is left."""
+    """One spacing of 0.08 m keeps 0.90, of 0.04 m 0.95; through borders 0.89 to 0.91 is left."""
     kept, strayed = swung(tmp_path, off)
     assert 0.885 < kept < 0.95
     assert strayed < 0.013
@@ -245,14 +245,15 @@ def test_a_wave_through_borders_at_its_nodes_keeps_what_one_spacing_keeps(off, t
 
 @LONG
 def test_a_wave_is_lost_on_those_who_follow_in_disorder(tmp_path, monkeypatch):
-    """The control: where they do not step aside, 0.85 to 0.87 is left."""
+    """The control: where they do not step aside 0.77, 0.92 and 0.79 are left, by where the border is, so that
+    one border alone tells nothing; with it 0.90, 0.89 and 0.91."""
 
     def drift(self, time, dt, largest_speed):
         for x, v in zip(self.store["position"], self.store["velocity"]):
             x[self.columns] += v[self.columns] * dt
 
     monkeypatch.setattr(levels.Resizing, "advance", drift)
-    assert swung(tmp_path, 0.02)[0] < 0.87
+    assert np.mean([swung(tmp_path, off)[0] for off in (0.0, 0.02, 0.04)]) < 0.87
 
 
 def test_the_coarsest_are_neither_born_nor_die(tmp_path):
