@@ -186,6 +186,12 @@ class Kind:
         return False
 
     @property
+    def pace(self) -> int:
+        """How many steps of the simulation one of the scene is, a level of sizes that takes its own; 1 in any
+        scene where effects evolve fields."""
+        return 1
+
+    @property
     def reads(self) -> tuple[str, ...]:
         """What its work reads of neighbours of what materials fix (psph.fields.OF_MATERIAL)."""
         return ()

@@ -39,6 +39,8 @@ class Work:
     """Whether what it moves is a wall, which holds what is before it."""
     rows: Sequence[int] = ()
     """The places, among the rigid motions of the plan, of those that it moves itself."""
+    own_steps: Any = None
+    """Steps of their own that groups take (psph.simulation.own_steps)."""
 
     def meet(self, maps: np.ndarray) -> None:
         """Get the ``maps`` (rows, 3, dim, 1 + dim) of all rigid motions: an array that stays the same."""
@@ -64,6 +66,10 @@ class Work:
 
     def before_sums(self, dt: float) -> None:
         """Ready what the passes over pairs read, ``dt`` s after the last ones."""
+
+    def is_due(self, one: Any) -> bool | None:
+        """Whether the pass ``one`` runs in this step, where this kind says so; None: as it is for all."""
+        return None
 
     def loops(self, one: Any, loop: Any, seen: tuple, sums: Any) -> Iterable[tuple[Any, tuple]] | None:
         """Loops in the place of the compiled ``loop`` of the pass ``one`` over all particles, each with what

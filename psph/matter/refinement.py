@@ -12,11 +12,12 @@ from psph.scene.particles import settled_at
 from psph.scene.parts.level import LevelPart, LevelWall
 from psph.scene.shapes import bounds
 from psph.simulation.levels import CORNER, DIVIDED, LENGTH, Resizing
+from psph.simulation.stages import nothing
 from psph.work import Rank, Stage, Work
 
 SKINS = {1: 0.3, 2: 0.3, 3: 0.24}
-"""Part of the support by which lists reach farther at the least, by dimensions: how far each particle strays
-counts here, not how far two come nearer.  In 3D longer rows cost more, in 2D new lists."""
+"""Part of the support by which lists reach farther at the least, by dimensions: in 3D longer rows cost more,
+in 2D new lists."""
 
 FIELDS = (
     Field(LENGTH, "m", "smoothing length of its level of sizes"),
@@ -48,16 +49,25 @@ class Refinement(Kind):
         return False
 
     @property
+    def pace(self) -> int:
+        """Each level takes twice the step of the next finer one."""
+        return 2 ** (self.levels.count - 1 - getattr(self.scene, "level", 0))
+
+    @property
     def reads(self) -> tuple[str, ...]:
         """Of whom it leads."""
         return ("mass",)
 
     @property
     def sizes(self) -> Sizes:
-        """By the level of each particle; only who follows looks at other levels."""
+        """By the level of each particle; only who follows looks at other levels.  Who leads and who divides
+        is found with new lists: nobody strays by more than a third of the narrowest margin until then."""
         skin = max(SKINS[self.scene.dimensions], self.scene.case.neighbours.skin)
         follows = np.array([one.is_fluid and not one.mobile for one in self.scene.species])
-        return Sizes(self.scene.kernel.support, skin, LENGTH, LENGTH, growth=1.0, across=follows)
+        finest = self.levels.support(self.levels.count - 1)
+        return Sizes(
+            self.scene.kernel.support, skin, LENGTH, LENGTH, growth=1.0, across=follows, strays=finest
+        )
 
     @property
     def levels(self) -> Levels:
@@ -94,7 +104,11 @@ class Refinement(Kind):
 
     def stages(self) -> Mapping[str, Stage]:
         """Who leads and follows is found before new lists are made, and who follows before the sums."""
-        return {"renew_lists": Stage(_renew, _begin), "sum_over_pairs": Stage(_impose, _impose)}
+        return {
+            "predict": Stage(_turn, nothing),
+            "renew_lists": Stage(_renew, _begin),
+            "sum_over_pairs": Stage(_impose, _impose),
+        }
 
     def renews(self, passes: Sequence) -> tuple[str, ...]:
         """The state of who follows."""
@@ -120,15 +134,25 @@ class Refinement(Kind):
                 yield f"space.refine[{n}].shape: outside the domain, where nothing is; move it into the fluid"
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
-        """What each level has."""
+        """What each level has, and how long its steps are."""
         levels = self.levels
         for level in range(1, levels.count):
             dx, h, wide = levels.spacing(level), levels.smoothing_length(level), levels.margin(level)
             yield "reach", f"  level {level}     dx = {dx:g} m, h = {h:g} m, margin {wide:g} m"
+        for level, one in enumerate((plan, *plan.finer)):
+            if one.pace > 1:
+                yield (
+                    "steps",
+                    f"  level {level}             its steps are {one.pace} of those of the finest",
+                )
 
 
 def _work(simulation):
     return simulation.engine.of(Refinement.name)
+
+
+def _turn(simulation) -> None:
+    _work(simulation).clock.turn(simulation.steps, simulation.impacts.lasts)
 
 
 def _begin(simulation) -> None:

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
+from psph.engine.threads import in_threads
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.parallel.skin import PART_OF_CUTOFF, PART_OF_PERIOD
-from psph.particles.drift_by_size import shares_moved
+from psph.particles.drift_by_size import shares_moved, stray
 from psph.particles.sizes import Sizes
 
 ENOUGH = 1.1
@@ -35,7 +36,8 @@ class Straying:
     @property
     def farthest(self) -> float:
         """Bound on how far a particle is from where it was listed, m."""
-        return min(PART_OF_CUTOFF * self.domain.cutoff, PART_OF_PERIOD * self._shortest)
+        usual = min(PART_OF_CUTOFF * self.domain.cutoff, PART_OF_PERIOD * self._shortest)
+        return min(usual, self._sizes.strays)
 
     def choose(self) -> None:
         """Lists reach by sizes alone."""
@@ -58,18 +60,17 @@ class Straying:
 
     def reach(self) -> bool:
         """Whether the lists reach far enough for where particles stand now; collective."""
-        store, inner = self.domain.store, self.domain.store.inner
-        apart2 = strayed2 = np.zeros(store.owned)
-        for x, listed, v in zip(store["position"], store["listed_position"], self._drift):
-            way = x[inner] - listed[inner]
-            apart2, strayed2 = apart2 + way**2, strayed2 + (way - v * self._since) ** 2
-        share = np.sqrt(strayed2 / (self._sizes.support * store[self._sizes.listed][inner]) ** 2)
-        tops = [apart2.max(initial=0.0), share.max(initial=0.0)]
-        apart2, most = largest(self.domain.comm, tops).tolist()
+        store, since = self.domain.store, self._since
+        share = np.empty(store.owned)
+        own = tuple(v * since for v in self._drift), self._sizes.support, store.low, share
+        told = store["position"], store["listed_position"], store[self._sizes.listed], *own
+        tops = np.max(in_threads(stray, store.low, store.low + store.owned, *told), axis=0)
+        apart2, most = largest(self.domain.comm, [*tops]).tolist()
         self.growth = self._sizes.growth_left(share, most)
         # Written so that NaN asks for new lists.
         near = apart2 < self.farthest**2
-        if near and self._together and not self._sizes.growth_left(most, most) > ENOUGH:
+        enough = ENOUGH if self._sizes.grow else self._sizes.least_growth
+        if near and self._together and not self._sizes.growth_left(most, most) > enough:
             most = min(most, self._see_who_goes_together())
         return near and self._sizes.growth_left(most, most) > self._sizes.least_growth
 

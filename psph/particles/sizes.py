@@ -28,7 +28,8 @@ class Sizes(NamedTuple):
     shortest distance of two mirrors across one axis, m.  Lists reach ``growth`` + ``skin`` times the support:
     the ways that both of a pair have strayed, and what lengths have grown by, share what is more than 1.
     ``across`` (groups,) says which groups list others of all levels of sizes, each as far as that one
-    reaches, and not of their own alone; None: all do, as far as one of the two reaches."""
+    reaches, and not of their own alone; None: all do, as far as one of the two reaches.  Nobody ``strays``
+    farther, m, from where lists were made."""
 
     support: float
     skin: float
@@ -37,6 +38,7 @@ class Sizes(NamedTuple):
     between: float = math.inf
     growth: float = GROWTH
     across: np.ndarray | None = None
+    strays: float = math.inf
 
     def reach(self, length):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""

@@ -135,7 +135,7 @@ class Guards:
             yield "speed"
         if stiff and simulation.strain > bounds.density:
             yield "density"
-        if simulation.steps % EVERY == 0:
+        if simulation.passed(EVERY):
             with simulation.ledger("guards"):
                 slow = [
                     (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),

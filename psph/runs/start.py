@@ -211,7 +211,7 @@ def _begin(scene, plan, comm, folder: Path, saved: Saved | None) -> tuple[Simula
 def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: Path) -> None:
     """Leave a checkpoint where one is due or asked for; raise Stopped where it is the last."""
     call, every = Call(int(simulation.requested)), case.checkpoint.every
-    if call is Call.NOTHING and not (every and simulation.steps % every == 0):
+    if call is Call.NOTHING and not (every and simulation.passed(every)):
         return
     begun = time.monotonic()
     write_checkpoint(simulation, record, case, folder)

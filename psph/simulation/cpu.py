@@ -3,7 +3,7 @@
 All that depends on how sums are computed on a processor lies behind these few methods.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -76,6 +76,7 @@ class Engine:
             self.poses.frame,
             scene.layout.periods,
             plan.pulls.booked,
+            next((work.own_steps for work in self.kinds if work.own_steps), None),
         )
         self._midway_rules = self._rules._replace(poses=self.poses.middle)
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
@@ -106,7 +107,8 @@ class Engine:
         for field in self.plan.evolving:
             _, *rates = companions(field)
             self.store.rotate(*(rate.name for rate in rates))
-        self.store.rotate("density_rate", "density_rate_1", "density_rate_2")
+        if self._rules.own is None:
+            self.store.rotate("density_rate", "density_rate_1", "density_rate_2")
 
     def go_midway(self, time: float, dt: float, largest_speed: float) -> None:
         """Kick, and drift to the middle of a step of ``dt`` s that ends at ``time``."""
@@ -153,17 +155,14 @@ class Engine:
         for kind in self.kinds:
             kind.begin()
 
-    def sum(self, steps: int, time: float, dt: float, ghosts_are_fresh: bool, at_once: bool = False) -> None:
-        """Every pass that is due in the step of ``dt`` s after ``steps``, which ends at ``time``, s.
-
-        Slow ones too where they are asked for ``at_once``.  The first of them brings ghosts up to date unless
-        they are; each then what was written before it, be it in an earlier step: passes differ in pace.
-        """
+    def sum(self, is_due: Callable[[Pass], bool], time: float, dt: float, ghosts_are_fresh: bool) -> None:
+        """Every pass that ``is_due`` in the step of ``dt`` s that ends at ``time``, s.  The first brings
+        ghosts up to date unless they are; each what was written before it, in earlier steps too."""
         for kind in self.kinds:
             kind.before_sums(dt)
         stale = self.plan.renewed if ghosts_are_fresh else self.plan.refreshed
         for one in self.plan.passes:
-            if one.midway or not (one.due(steps) or at_once and one.slow):
+            if one.midway or not is_due(one):
                 continue
             if fields := self._due_ghosts(one, stale):
                 self._sum_while_refreshing(one, fields)

@@ -19,6 +19,7 @@ from psph.composition.pair import take
 from psph.composition.terms import displacement, limit_density, limit_wall_density
 from psph.engine.jit import elementwise
 from psph.simulation.carried import book_work, carry, prescribed_squares, store_apparent_force
+from psph.simulation.own_steps import first_kick, keep_rates, last_kick, seen_ahead, weights_of_rates
 from psph.simulation.rules import borne, density
 from psph.vectors import add, at, dot, put, scale
 
@@ -34,16 +35,18 @@ def kick_drift_predict(first, last, time, dt, rules, view, columns):
     c = columns
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
+        half, (w, w_1, w_2) = 0.5 * dt * first_kick(rules.own, group), weights_of_rates(rules.own, group)
         rate = c.density_rate[k]
-        rho = c.density[k] + dt * (1.75 * rate - c.density_rate_1[k] + 0.25 * c.density_rate_2[k])
-        c.density[k] += 0.5 * dt * rate
+        rho = c.density[k] + dt * (w * rate + w_1 * c.density_rate_1[k] + w_2 * c.density_rate_2[k])
+        c.density[k] += half * rate
+        keep_rates(rules.own, group, k, c)
         if group < rules.free:
-            kick = scale(at(c.acceleration, k), 0.5 * dt)
-            v = add(at(c.velocity, k), kick)
+            a = at(c.acceleration, k)
+            v = add(at(c.velocity, k), scale(a, half))
             put(c.velocity, k, v)
             move = add(scale(v, dt), displacement(rules.effects, i, dt))
             put(c.position, k, add(at(c.position, k), move))
-            put(c.predicted_velocity, k, add(v, kick))
+            put(c.predicted_velocity, k, add(v, scale(a, seen_ahead(rules.own, group) * dt)))
             rho = limit_density(rules.effects, i, rho)
         else:
             rho = limit_wall_density(rules.effects, i, rho)
@@ -94,10 +97,11 @@ def kick(first, last, time, dt, lag, rules, view, columns):
     wall_v2_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
-        rho = c.density[k] if lag is None else c.density[k] + lag * c.density_rate[k]
+        share = last_kick(rules.own, group)
+        rho = c.density[k] if lag is None else c.density[k] + lag * share * c.density_rate[k]
         if group < rules.free:
             a = at(c.acceleration, k)
-            v = add(at(c.velocity, k), scale(a, 0.5 * dt))
+            v = add(at(c.velocity, k), scale(a, 0.5 * dt * share))
             put(c.velocity, k, v)
             rho = rho if lag is None else limit_density(rules.effects, i, rho)
             v2, a2 = dot(v, v), dot(a, a)

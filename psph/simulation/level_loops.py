@@ -9,6 +9,7 @@ from psph.composition.loads import Couple, Loads, Unloaded
 from psph.engine.settled import settled
 from psph.fields import with_length
 from psph.physics.motion import COUPLE, LOAD
+from psph.simulation.level_clock import LevelClock
 from psph.simulation.pairs import Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 
@@ -16,6 +17,11 @@ PARTS = LEADING, NEAR, FAR = range(3)
 """What a particle is to the passes: it has all sums, as who leads and walls have; it follows beside who leads
 and has its own sums alone; it follows farther off, or is a wall there that has no pressure but by a sum, and
 has those now and then."""
+
+
+SELDOM = 2
+"""Steps of a level for which the state and the sums serve of those who follow where nobody sees them who
+leads."""
 
 
 class LevelLoops:
@@ -26,8 +32,8 @@ class LevelLoops:
     level: what the fluid does is told once, wherever levels are there twice.
     """
 
-    def __init__(self, plan, store):
-        self.plan, self.store = plan, store
+    def __init__(self, plan, store, clock: LevelClock):
+        self.plan, self.store, self._clock = plan, store, clock
         self.role = np.zeros(0, np.uint8)
         self.pushing: Any = None
         self._levels = (plan, *plan.finer)
@@ -36,12 +42,13 @@ class LevelLoops:
         loaded = plan.materials.loaded
         self._loaded = () if loaded is None else [loaded & ~others for others in plan.materials.others]
 
-    def of(self, one: Pass, loop, seen: tuple, sums, far: bool) -> Iterator[tuple[Any, tuple]]:
-        """The compiled ``loop`` of the pass ``one`` for each level, and those of who follows and of loads,
-        with what each takes beside columns: what is ``seen``, where ``sums`` go; of those ``far`` off too."""
-        follows = {NEAR, FAR} if far else {NEAR}
-        for level in range(len(self._levels)):
+    def of(self, one: Pass, loop, seen: tuple, sums) -> Iterator[tuple[Any, tuple]]:
+        """The compiled ``loop`` of the pass ``one`` for each level that needs it, and those of who follows
+        and of loads, with what each takes beside columns: what is ``seen``, where ``sums`` go."""
+        due, far = self._clock.due(one), self._clock.every(SELDOM)
+        for level in np.flatnonzero(due).tolist():
             own, told = self._seen(level, one, seen)
+            follows = {NEAR, FAR} if far[level] else {NEAR}
             if not one.gives_rates:
                 yield loop, (Summed((), own.reductions, self._but(level, {LEADING} | follows)), *told, sums)
                 continue
@@ -50,7 +57,7 @@ class LevelLoops:
                 alone = Summed((), own.reductions, self._but(level, follows))
                 yield self._following[one.place], (alone, *told, Sums(None, None, sums.written))
         if one.gives_rates and self.pushing is not None:
-            yield from self._loads(one, seen)
+            yield from self._loads(one, seen, due)
 
     def _seen(self, level: int, one: Pass, seen: tuple) -> tuple[Pass, tuple]:
         """The pass with the numbers of a ``level``, and what is ``seen`` with its smoothing length."""
@@ -65,10 +72,11 @@ class LevelLoops:
         others[[len(PARTS) * level + part for part in parts]] = False
         return Unloaded(others, self.role)
 
-    def _loads(self, one: Pass, seen: tuple) -> Iterator[tuple[Any, tuple]]:
-        """The push of the leading fluid on each level."""
+    def _loads(self, one: Pass, seen: tuple, due: np.ndarray) -> Iterator[tuple[Any, tuple]]:
+        """The push of the leading fluid on each level that is ``due`` (levels,)."""
         s = self.store
-        for level, loaded in enumerate(self._loaded):
+        for level in np.flatnonzero(due).tolist() if self._loaded else ():
+            loaded = self._loaded[level]
             own, (metric, view, around) = self._seen(level, one, seen)
             couples = ((Couple(own.effects),), (s[COUPLE.name],)) if COUPLE.name in s else ((), ())
             summed = Summed(own.effects, couples[0], Loads(loaded, s.group))

@@ -1,6 +1,7 @@
 """Levels of sizes on a rank: who leads and who follows, with which state, who is born and who dies."""
 
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 
@@ -14,8 +15,9 @@ from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, find_beside, keep_level, rows_of_leaders
 from psph.particles.neighbours import empty
 from psph.scene.levels import Levels
+from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
-from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, LevelLoops
+from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
 from psph.simulation.surface_rows import rows_of
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
@@ -33,9 +35,6 @@ LASTS = 0.5
 """Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
 more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
 
-SELDOM = 2
-"""Steps for which the state and the sums serve of those who follow where nobody sees them who leads."""
-
 OF_FORCES = ("acceleration", "density_rate", "density_rate_1", "density_rate_2")
 """What forces give, and those who follow do not have: no pass has sums of it for them."""
 
@@ -44,11 +43,11 @@ BORN, DIED, GONE, COME = range(4)
 
 
 class Side:
-    """``some`` of those who follow, beside whoever leads or farther off, whom they have ``followed`` since
-    lists were made, and that they do in each ``every``-th step."""
+    """``some`` of those who follow on a ``level``, beside whoever leads or farther off, whom they have
+    ``followed`` since lists were made, and that they do in each ``every``-th step of theirs."""
 
-    def __init__(self, some: slice, followed: Followed, every: int):
-        self.some, self.followed, self.every, self._begun = some, followed, every, False
+    def __init__(self, some: slice, level: int, followed: Followed, every: int):
+        self.some, self.level, self.followed, self.every, self._begun = some, level, followed, every, False
 
     def begin(self) -> bool:
         """Whether that is still to be found; it is from now on."""
@@ -92,8 +91,10 @@ class Resizing(Work):
         self._follow, self._go = settled(follow), settled(go_along)
         self._lanes = rank.plan.space.lanes
         self.columns = np.zeros(0, np.int64)
-        self._loops = LevelLoops(self.plan, self.store)
-        self._loaded, self._all = self.plan.materials.loaded, True
+        self.clock = LevelClock([one.pace for one in (self.plan, *self.plan.finer)], self.level_of)
+        self.own_steps = self.clock.own
+        self._loops = LevelLoops(self.plan, self.store, self.clock)
+        self._loaded = self.plan.materials.loaded
         if self._loaded is not None:
             self._loops.pushing = empty(0, 0)
 
@@ -180,19 +181,22 @@ class Resizing(Work):
         part = np.where(following & beside, NEAR, np.where((following | told) & ~beside, FAR, LEADING))
         self._loops.role = (len(PARTS) * level).astype(np.uint8)
         self._loops.role[store.inner] += part.astype(np.uint8)
-        own = np.concatenate([np.flatnonzero(following & (beside == one)) for one in (True, False)])
-        self.columns, near = store.low + own, np.count_nonzero(following & beside)
+        kinds = list(product((1, SELDOM), range(self.levels.count)))
+        own = [following & (beside == (every == 1)) & (level[store.inner] == one) for every, one in kinds]
+        ends = np.cumsum([0, *map(np.count_nonzero, own)])
+        own = np.concatenate([*map(np.flatnonzero, own)])
+        self.columns = store.low + own
         for row in (row for name in OF_FORCES for row in store.rows[name]):
             store.data[row, self.columns] = 0.0
         self._leaders = Leaders(store.low, alike, others, store[LENGTH], listed)
         self._scale = self.levels.layout.spacing * 0.5 ** self._followed(own, level[self.columns])
         seen = alike.lengths[own].astype(np.int64) + others.lengths[own]
-        ends, many = np.cumsum(seen), np.zeros(len(own), np.int64)
-        size = int(ends[-1]) if len(own) else 0
+        begins, many = np.cumsum(seen) - seen, np.zeros(len(own), np.int64)
+        size = int(seen.sum())
         entries = np.empty(size, np.uint32), np.empty(size), np.empty(size), int(seen.max(initial=0))
         self._sides = [
-            Side(some, Followed((ends - seen)[some], many[some], *entries), every)
-            for some, every in ((slice(0, near), 1), (slice(near, None), SELDOM))
+            Side(some, one, Followed(begins[some], many[some], *entries), every)
+            for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
         ]
 
     def _followed(self, own: np.ndarray, level: np.ndarray) -> np.ndarray:
@@ -223,10 +227,14 @@ class Resizing(Work):
                 self.domain.halo.refresh(self.plan.refreshed)
             simulation.listed = False  # ghosts are fresh, but for what follows
         with self.ledger("refine"):
-            self._all = simulation.steps % SELDOM == 0
             for side in self._sides:
-                if simulation.steps % side.every == 0:
-                    self._impose(side, side.every * simulation.dt * self.gravity)
+                if self.clock.every(side.every)[side.level]:
+                    steps = side.every * int(self.clock.pace[side.level])
+                    self._impose(side, steps * simulation.dt * self.gravity)
+
+    def is_due(self, one) -> bool:
+        """Whether any level needs a pass."""
+        return bool(self.clock.due(one).any())
 
     def _impose(self, side: Side, fall: np.ndarray) -> None:
         """The state of some, by those whom they have followed since lists were made, or whom they find; who
@@ -239,7 +247,7 @@ class Resizing(Work):
 
     def loops(self, one, loop, seen: tuple, sums) -> Iterator[tuple]:
         """A pass level by level."""
-        return self._loops.of(one, loop, seen, sums, self._all)
+        return self._loops.of(one, loop, seen, sums)
 
     # What is kept and told.
 

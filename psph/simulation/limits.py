@@ -8,9 +8,6 @@ from psph.simulation.paces import share_of_limit
 
 def step_limits(plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
     """Every limit of the time step with its name, s, for the largest |v| and |a|."""
-    if plan.fixed_step is not None:
-        yield plan.fixed_step, "time.step"
-        return
     for kind in plan.matter:
         yield from kind.limits(plan, speed, acceleration)
     frictions = []

@@ -54,7 +54,7 @@ class Neighbourhood:
         if not self.plan.passes:
             return Unlisted()
         if self.plan.sizes is not None:
-            return Straying(self.domain, self.plan.sizes, not self.planes and self.plan.sizes.grow)
+            return Straying(self.domain, self.plan.sizes, not self.planes)
         bounds, self.domain.reach = None, reach.support + reach.first
         if reach.least is not None:
             passes = 1 if self.plan.midway is None else 2

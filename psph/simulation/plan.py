@@ -122,6 +122,8 @@ class Plan:
     """Fields that frames hold beside those of every frame (output.fields)."""
     steps_held: int
     """For how many steps the rates of friction serve (psph.simulation.paces)."""
+    pace: int = 1
+    """How many steps one of its own is (psph.simulation.own_steps)."""
     finer: tuple["Plan", ...] = ()
     """The same for each finer level of sizes (psph.scene.levels): other numbers, the same code."""
 
@@ -250,9 +252,13 @@ class Plan:
         return min(self.step_limits(speed, acceleration), key=lambda limit: limit[0])
 
     def step_limits(self, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
-        """Every limit of the time step with its name, s."""
+        """Every limit of the time step with its name, s: its part, of a level whose own steps are longer."""
+        if self.fixed_step is not None:
+            yield self.fixed_step, "time.step"
+            return
         for one in (self, *self.finer):
-            yield from step_limits(one, speed, acceleration)
+            for step, name in step_limits(one, speed, acceleration):
+                yield step / one.pace, name
 
 
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
@@ -367,6 +373,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         extremes=extremes,
         kept=kept_in_frames(scene, stored),
         steps_held=hold_for,
+        pace=1 if evolving else max((kind.pace for kind in matter), default=1),
         finer=tuple(make_plan(one, catalogue) for one in scene.finer),
     )
 

@@ -20,7 +20,8 @@ class Rules(NamedTuple):
     ``poses`` are the maps of what is rigid (psph.simulation.poses) and ``pose_of`` the row of each group, or
     None; ``frame`` is what a moving frame of reference adds to gravity, or None.  ``periods`` m, None for
     an open axis.  ``given_pressure`` are the groups to which a pass gives their pressure; ``booked`` are
-    effects whose work on particles is booked.
+    effects whose work on particles is booked; ``own`` are steps of their own that groups take
+    (psph.simulation.own_steps), or None.
     """
 
     effects: tuple
@@ -35,6 +36,7 @@ class Rules(NamedTuple):
     frame: Any
     periods: tuple
     booked: tuple = ()
+    own: Any = None
 
 
 class Columns(NamedTuple):

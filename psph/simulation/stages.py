@@ -79,8 +79,8 @@ def drift(simulation) -> None:
 
 def sum_over_pairs(simulation) -> None:
     """Every pass over the neighbours that is due."""
-    at = simulation.steps, simulation.then, simulation.dt
-    simulation.engine.sum(*at, ghosts_are_fresh=not simulation.listed, at_once=simulation.impacts.lasts)
+    at = simulation.then, simulation.dt
+    simulation.engine.sum(simulation.is_due, *at, ghosts_are_fresh=not simulation.listed)
 
 
 def begin_sums(simulation) -> None:

@@ -10,6 +10,7 @@ from psph.output.ledger import Ledger
 from psph.particles.store import Store
 from psph.simulation.cpu import Engine
 from psph.simulation.impacts import Impacts
+from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.population import Population
 from psph.simulation.stages import stages_of
@@ -83,9 +84,16 @@ class Simulation:
         self.engine.spent_on_pairs()  # the first passes may have loaded compiled loops
 
     def step(self, end: float = np.inf) -> None:
-        """Advance by one time step; the last one before ``end`` (s) ends exactly there."""
-        self.dt, self.limited_by, self.then = self._next_step(end)
-        self._refuse_lost(self.dt)
+        """Advance by one time step, or where levels of sizes have steps of their own by one of the coarsest;
+        the last one before ``end`` (s) ends exactly there."""
+        whole, self.limited_by, then = self._next_step(end)
+        for left in reversed(range(self.plan.pace)):
+            self._advance(whole / self.plan.pace, left, then)
+
+    def _advance(self, dt: float, left: int, end: float) -> None:
+        """A step of ``dt`` s, before so many that are ``left`` to an ``end``."""
+        self._refuse_lost(dt)
+        self.dt, self.then = dt, self.time + dt if left else end
         with self.ledger("skin"):
             self.jolt = self.engine.poses.advance(self.then, self.dt)
             self.listed = self.hold(self.dt)
@@ -94,6 +102,16 @@ class Simulation:
         self.time = self.then
         self.steps += 1
         self._refuse_blow_up()
+
+    def passed(self, every: int) -> bool:
+        """Whether the last :meth:`step` has brought the steps to a multiple of ``every``, or past one."""
+        return self.steps % every < self.plan.pace
+
+    def is_due(self, one: Pass) -> bool:
+        """Whether a pass runs in this step: as all do, or as a kind of matter says."""
+        told = (kind.is_due(one) for kind in self.engine.kinds)
+        usual = one.due(self.steps) or self.impacts.lasts and one.slow
+        return next((due for due in told if due is not None), usual)
 
     def hold(self, dt: float) -> bool:
         """Whether the lists hold ``dt`` s longer; collective."""
@@ -139,12 +157,13 @@ class Simulation:
         self.impacts.restore(saved.state["impacts"])
 
     def _next_step(self, end: float) -> tuple[float, str, float]:
-        """Δt in s, the name of the limit that sets it, and the time after the step.
+        """Δt in s, of the coarsest level, the name of the limit that sets it, and the time after the step.
 
         Where less than two of the longest steps are left, two equal ones follow, or one that is as
         long as what is left: so no step is shorter than half of its limit.
         """
         dt, limited_by = self.plan.longest_step(self.speed, self.acceleration)
+        dt *= self.plan.pace
         left = end - self.time
         if left >= 2.0 * dt:
             return dt, limited_by, self.time + dt

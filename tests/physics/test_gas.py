@@ -134,7 +134,7 @@ def test_without_friction_heat_is_the_work_of_compression(tmp_path):
     store = simulation.store
     store["unequal"][:] = 0.0
     simulation.listed = False
-    simulation.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=True)
+    simulation.engine.sum(simulation.is_due, 0.0, 0.0, ghosts_are_fresh=True)
     [plain] = of(simulation, "thermal_energy_rate")
     assert np.abs(plain - expected).mean() > 0.02 * size
 

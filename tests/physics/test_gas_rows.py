@@ -76,7 +76,7 @@ def test_rows_hold_all_in_reach_and_few_more(tmp_path):
 def forces(simulation):
     """Accelerations and rates of heat by the rows that are met now."""
     simulation.listed = False
-    simulation.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=True)
+    simulation.engine.sum(simulation.is_due, 0.0, 0.0, ghosts_are_fresh=True)
     store = simulation.store
     return np.array([*store.shown("acceleration").T, store.shown("thermal_energy_rate")])
 
