@@ -142,7 +142,7 @@ class NeighbourLists(Table):
         le=1,
     )
     least_skin: float | None = key(
-        "that down to which the skin narrows where lists last; it widens up to `skin` where they do not",
+        "that down to which the skin narrows where lists last; else it widens, up to `skin`",
         None,
         unit="1",
         otherwise="the skin stays as it is",
