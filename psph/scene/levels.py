@@ -88,6 +88,24 @@ class Levels:
         ``corner`` (n,)."""
         return points - self.to_corners(level)[corner.astype(np.int64)] if level else points
 
+    def away(self, level: int, points: np.ndarray, corner: np.ndarray) -> np.ndarray:
+        """How far particles of a level at ``points`` (n, dim), the ``corner`` (n,) of coarser cells, are outside
+        of its region, m (n,): by the middles of these cells, and by the points themselves where a middle is in
+        a wall or outside the domain.  There coarser water is not, and a corner that sank to the floor stays."""
+        middles = self.middles(level, points, corner)
+        found, own = self.outside(level, middles), self.outside(level, points)
+        astray = np.flatnonzero((found > own) & (own < 0.0))
+        closed = astray[self._closed(middles[astray])] if len(astray) else astray
+        found[closed] = own[closed]
+        return found
+
+    def _closed(self, points: np.ndarray) -> np.ndarray:
+        """Which of some points (n, dim), m, are in walls as drawn or outside the domain (n,)."""
+        layout = self.layout
+        x = [layout.folded(d, along) for d, along in enumerate(points.T)]
+        beyond = [(a < low) | (a > up) for a, low, up in zip(x, layout.lower, layout.upper)]
+        return np.logical_or.reduce([np.isin(layout.held(x, x[0].shape), layout.parts.walls), *beyond])
+
     def sites(self, level: int, extra: float = 0.0, room: tuple[Corner, Corner] | None = None) -> np.ndarray:
         """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more; in a box, the
         ``room``, alone where that is told."""

@@ -112,7 +112,7 @@ class Resizing(Work):
         corner = store[CORNER][store.inner]
         for one in range(self.levels.count):
             own = fluid & (level == one)
-            away[own] = self.levels.outside(one, self.levels.middles(one, places[own], corner[own]))
+            away[own] = self.levels.away(one, places[own], corner[own])
             within[own] = self.levels.outside(one + 1, places[own])
         slack = np.where(self.follows[group], -TIE, TIE) * self.levels.layout.spacing
         follows = fluid & ((away >= slack) | (within < -slack))

@@ -318,6 +318,16 @@ def test_levels_nest(tmp_path):
     assert (around[finest < found.margin(2)] < -found.support(1)).all()
 
 
+def test_a_floor_is_no_border_for_a_corner_that_sinks_to_it(tmp_path):
+    """The middle of the cell whose upper corner it was is below the floor; at a side of water that counts."""
+    found = Levels(Scene(draft(tmp_path, STILL.replace("FACTOR", "2"))).layout)
+    upper_right, dx = np.array([3]), found.spacing(1)
+    at_floor, at_border = np.array([[1.0, 0.2 * dx]]), np.array([[0.5 + 0.2 * dx, 0.25]])
+    assert found.away(1, at_floor, upper_right)[0] == found.outside(1, at_floor)[0] < 0.0
+    assert found.outside(1, found.middles(1, at_floor, upper_right))[0] > 0.0  # the control
+    assert found.away(1, at_border, upper_right)[0] == pytest.approx(0.3 * dx)
+
+
 @pytest.mark.parametrize(
     "key, says",
     [
