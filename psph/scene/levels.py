@@ -89,9 +89,10 @@ class Levels:
         return points - self.to_corners(level)[corner.astype(np.int64)] if level else points
 
     def away(self, level: int, points: np.ndarray, corner: np.ndarray) -> np.ndarray:
-        """How far particles of a level at ``points`` (n, dim), the ``corner`` (n,) of coarser cells, are outside
-        of its region, m (n,): by the middles of these cells, and by the points themselves where a middle is in
-        a wall or outside the domain.  There coarser water is not, and a corner that sank to the floor stays."""
+        """How far particles of a level at ``points`` (n, dim), the ``corner`` (n,) of coarser cells, are
+        outside of its region, m (n,): by the middles of these cells.  Where a middle is in a wall or outside
+        the domain it is by the points themselves: coarser water is not there, and a corner that sank to the
+        floor stays."""
         middles = self.middles(level, points, corner)
         found, own = self.outside(level, middles), self.outside(level, points)
         astray = np.flatnonzero((found > own) & (own < 0.0))
