@@ -191,7 +191,7 @@ def kept_of_a_vortex(folder, monkeypatch, order):
 def test_a_vortex_keeps_its_energy(tmp_path, monkeypatch):
     """Measured: 0.955; of a fit without terms of second order, the control, 0.910."""
     lost = 1.0 - kept_of_a_vortex(tmp_path, monkeypatch, order=2)
-    assert lost < 0.06 and 1.0 - kept_of_a_vortex(tmp_path, monkeypatch, order=1) > 1.7 * lost
+    assert lost < 0.06 and 1.0 - kept_of_a_vortex(tmp_path, monkeypatch, order=1) > 1.9 * lost
 
 
 @pytest.mark.parametrize("border", [0.3, 0.305, 0.31])
