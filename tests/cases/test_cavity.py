@@ -5,6 +5,7 @@ import pytest
 from mpi4py import MPI
 
 from psph.case import load
+from psph.errors import Failed
 from psph.lab.peers import judge, own
 from psph.lab.peers.records import Outcome
 from psph.runs import start
@@ -12,6 +13,8 @@ from psph.runs import start
 CASE = own.CASES / "hard/cavity.toml"
 
 DYNAMIC = ("walls.basin.condition=dynamic", "walls.lid.condition=dynamic")
+
+EXTRAPOLATED = ("walls.basin.condition=extrapolated", "walls.lid.condition=extrapolated")
 
 
 def errors(folder, *keys):
@@ -31,3 +34,12 @@ def test_the_vortex_of_a_cavity_spins_up_in_time(tmp_path, monkeypatch):
     u, v = np.mean(starts, axis=0)
     assert u < 0.025 and v < 0.04
     assert errors(tmp_path / "particles", *DYNAMIC)[0] > 0.04
+
+
+@pytest.mark.long
+def test_walls_that_take_the_pressure_of_the_fluid_close_a_cavity(tmp_path, monkeypatch):
+    """Damping is not held down to the fluid's own viscosity there; control: no more of it in disorder."""
+    monkeypatch.chdir(own.HERE)
+    assert errors(tmp_path / "held", *EXTRAPOLATED)[0] < 0.15
+    with pytest.raises(Failed, match="blew up"):
+        errors(tmp_path / "capped", *EXTRAPOLATED, "physics.reconstructed_damping={alpha=0.03}")

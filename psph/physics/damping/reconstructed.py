@@ -149,7 +149,7 @@ class ReconstructedDamping(NamedTuple):
     160, for a viscosity on approach.  In disorder and at a surface, as :class:`LocalPotential
     <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to ``in_disorder`` where that
     is larger: psph's own; in a domain that one fluid fills, soils and tensions apart, no further than its own
-    viscosity acts.  A wall damps what approaches it along its normal at more than 0.02 c, the excess alone,
+    viscosity acts, unless walls take its pressure (sound between those grows).  A wall damps what approaches it along its normal at more than 0.02 c, the excess alone,
     and nothing else; so does a fluid of another density, at 0.1 c.  It conserves momentum and angular
     momentum.
     """
@@ -162,7 +162,7 @@ class ReconstructedDamping(NamedTuple):
         Field(
             ge=0,
             description="α in disorder and at a surface, where larger; where one fluid fills the domain no "
-            "larger than its own viscosity acts",
+            "larger than its own viscosity acts, unless walls are extrapolated",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.0
@@ -171,7 +171,9 @@ class ReconstructedDamping(NamedTuple):
         """The form that knows the spacing, and how far α rises."""
         images = images_of(scene)
         filled = isinstance(images, Whole) and not scene.has_free_surface
-        most = min(self.in_disorder, own_alpha(scene)) if filled else self.in_disorder
+        # Sound between walls that take the pressure of the fluid grows: what is capped there blows up.
+        capped = filled and not any(one.extrapolated for one in scene.species)
+        most = min(self.in_disorder, own_alpha(scene)) if capped else self.in_disorder
         more = max(most - self.alpha, 0.0)
         ends = isinstance(images, WithStrengths | EndingAtOthers) or not _all_flows(scene)
         form = DampingToEdges if ends else BesideLinearFlow
