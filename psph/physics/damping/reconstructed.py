@@ -150,8 +150,8 @@ class ReconstructedDamping(NamedTuple):
     <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to ``in_disorder`` where that
     is larger: psph's own; in a domain that one fluid fills, soils and tensions apart, no further than its own
     viscosity acts, unless walls take its pressure (sound between those grows).  A wall damps what approaches
-    it along its normal at more than 0.02 c, the excess alone, and nothing else; so does a fluid of another density, at 0.1 c.  It conserves momentum and angular
-    momentum.
+    it along its normal at more than 0.02 c, the excess alone, and nothing else; so does a fluid of another
+    density, at 0.1 c.  It conserves momentum and angular momentum.
     """
 
     conserves = ("momentum", "angular momentum")
