@@ -45,6 +45,12 @@ LARGEST = 2**63
 """TOML's whole numbers have 64 bits, Python's any number of them."""
 
 
+class Varied(str):
+    """An override that a study makes of a key that it varies; messages say so in the place of ``--set``."""
+
+    option = "vary"
+
+
 class Override(NamedTuple):
     """A key set from outside.  ``made``: the highest key that it brought in; both are locations."""
 
@@ -143,7 +149,7 @@ def checked(
 
 def _with(file: str, option: str, text: str) -> str:
     """The file and the override that set a key."""
-    return f"{file} with {option} {shortened(text, LONGEST_QUOTE)}"
+    return f"{file} with {getattr(text, 'option', option)} {shortened(text, LONGEST_QUOTE)}"
 
 
 def _read(file: str) -> dict[str, Any]:

@@ -40,6 +40,9 @@ RANGES = 64
 SOME = 40
 """Entries of a row for which there is room at first; the guess need not be right."""
 
+UNSIGNED = 2**64 - 1
+"""What is below zero becomes a large number by it, in compiled code and without."""
+
 WIDER = 1.0 + 1e-9
 """Rounding may put a particle into the next cell."""
 
@@ -338,7 +341,8 @@ def append_row(entries, end, m, within2_i, grids, ranges, least, most):
         stop = np.uint64(ranges[r, 1])
         for n in range(np.uint64(ranges[r, 0]), stop, width_of(grids.within2)):
             others = (one << min(np.uint64(LANES), stop - n)) - one
-            others &= ~(np.uint64(m - n < np.uint64(LANES)) << (m - n) % np.uint64(LANES))
+            ahead = np.uint64((m - n) & UNSIGNED)
+            others &= ~(np.uint64(ahead < np.uint64(LANES)) << ahead % np.uint64(LANES))
             end = append_near(entries, end, n, near_bits(x_i, within2_i, grids, n) & others)
     for entry in range(first, end):
         entries[entry] = grids.columns[entries[entry]]

@@ -25,6 +25,7 @@ from psph.acts import (
     SOILS,
     SOLIDS,
     SYMMETRY,
+    THREE,
     TWO,
     UPDATED,
     refusals,
@@ -263,9 +264,15 @@ def test_a_body_force_pulls_what_the_table_says_and_no_more(name, beside, walk):
         assert (with_it[NAMES[kind]] != without[NAMES[kind]]) == acts, kind
 
 
-ELSEWHERE = ("SymmetricPressure", "CentralFriction", "LaplacianFriction")
-"""The default, without which there is another in its place; and what acts in viscous fluids alone, which
-tests/physics has."""
+ELSEWHERE = (
+    "SymmetricPressure",
+    "CentralFriction",
+    "LaplacianFriction",
+    "WholeAttraction",
+    "SofteningChange",
+)
+"""The default, without which there is another in its place; what acts in viscous fluids alone; and parts of
+self-gravity, which comes with one key: tests/physics and tests/matter have them."""
 
 CORRECTED = "physics.gradient_correction = 0.7"
 
@@ -274,18 +281,20 @@ NEEDS = {
     "FourthOrderDiffusion": (CORRECTED, ""),
     "LocalPotential": (CORRECTED, ""),
     "ArtificialStress": ("physics.artificial_stress = OFF", "physics.artificial_stress = 0.3"),
+    "ShockViscosity": ("physics.shock_viscosity = OFF", ""),
+    "HeatConduction": ("physics.heat_conduction = OFF", ""),
     "SolidContact": (boxes(MADE_OF[SOLIDS].replace("plate", "other").replace(", MOVES", ""), 0.5, 2), ""),
 }
 """What a case has besides, without and with the effect in the place of its own key; where nothing, its key."""
 
 APART = {
     "TensionFloor": {
-        1: [[30.0]],
-        2: [[30.0, 0.0], [0.0, 20.0]],
-        3: [[20.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0] * 3],
+        1: [[120.0]],
+        2: [[150.0, 0.0], [0.0, 120.0]],
+        3: [[50.0, 0.0, 0.0], [0.0, 50.0, 0.0], [0.0] * 3],
     }
 }
-"""How it moves where another motion shows an effect."""
+"""How it moves where another motion shows an effect: a soil opens by a tenth within the steps of a walk."""
 
 CELLS = [
     (row.name, corner)
@@ -314,8 +323,11 @@ def seen(walk, name, *corners):
     """Whether particles of the matter that comes first in ``corners`` are elsewhere with an effect than
     without."""
     without, instead = NEEDS.get(name, ("", ""))
+    if TWO in refusals_of_effect(ASKED[name].effect):
+        corners = (*corners, THREE)
     dimensions = next((1 + DIMENSIONS.index(one) for one in corners if one in DIMENSIONS), 2)
-    with_it = instead or f"{without}\n{key_of(name, dimensions)}"
+    off = without.endswith("OFF")
+    with_it = instead or f"{'' if off else without}\n{key_of(name, dimensions)}"
     flow = {
         1: [[-50.0]],
         2: [[30.0, 40.0], [10.0, -50.0]],

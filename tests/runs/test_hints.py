@@ -50,3 +50,11 @@ def test_nothing_moves_so_friction_rests(tmp_path):
     assert any("nothing moves" in line for line in said(tmp_path, SQUARE, *still))
     moving = [*still, "fluids.water.velocity=[1.0, 0.0]"]
     assert not any("nothing moves" in line for line in said(tmp_path, SQUARE, *moving))
+
+
+@pytest.mark.parametrize(("asked", "served"), [(4, 4), (8, 4)])
+def test_friction_that_is_held_for_less_than_asked_for_is_a_hint(tmp_path, asked, served):
+    """Damping in disorder does not bear 8 steps in 2D."""
+    lines = said(tmp_path, TANK, "scheme=stable", f"time.damping_every={asked}")
+    told = [line for line in lines if line.startswith("time.damping_every")]
+    assert [f"friction serves for {served} here" in line for line in told] == [True] * (served < asked)

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import tomli_w
 
+from psph.case.loader import Varied
 from psph.case.profiles import OFF
 from psph.errors import LONGEST_QUOTE, shortened
 from psph.lab.errors import StudyError
@@ -87,7 +88,7 @@ def rows(vary: Mapping[str, Sequence], grid: bool) -> list[Settings]:
 
 def overrides(settings: Settings) -> list[str]:
     """The settings as what ``--set`` takes; a text is one to it whatever it says."""
-    return [f"{key}={_quoted(value)}" for key, value in settings.items()]
+    return [Varied(f"{key}={_quoted(value)}") for key, value in settings.items()]
 
 
 def _quoted(value) -> str:

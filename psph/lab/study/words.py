@@ -12,6 +12,9 @@ SAME = 0.005
 
 HALF = 0.5
 
+ALL_WRONG = 1.0
+"""Relative error from which on a spacing for half of it is no advice."""
+
 
 def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
     """What a given error costs in a series of spacings."""
@@ -43,6 +46,9 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
             f"{beginning}the other runs predict {percent(error.value)} in {seconds(took.value)} for the "
             "finest one."
         )
+    if finest.error >= ALL_WRONG:
+        yield f"{beginning}nothing is resolved yet: try a finer spacing."
+        return
     spacing = ladder.spacing_for_error(HALF * finest.error)
     if not math.isnan(spacing):
         longer = ladder.seconds(spacing).value / ladder.seconds(finest.spacing).value

@@ -246,6 +246,12 @@ def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
     assert "2 of 5 runs did not finish" in job.stdout
 
 
+def test_what_a_study_varies_is_blamed_as_such(tmp_path):
+    """The key was not given by --set."""
+    job = study(tmp_path, "--vary", "space.spacin=0.05,0.04")
+    assert job.returncode == 2 and "with vary space.spacin=0.0" in job.stdout + job.stderr
+
+
 def test_a_study_of_which_no_run_finished_fails_and_says_so(tmp_path):
     text = WAVE.replace('"space.spacing" = [0.05, 0.025, 0.0125]', '"space.spacing" = [0.0512, 0.0124]')
     job = study(tmp_path, text=text)

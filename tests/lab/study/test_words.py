@@ -72,3 +72,10 @@ def test_advice_can_be_pasted():
         "without compiling, with:"
     )
     assert lines[1:] == ['precision = "mixed"', "[space]", "spacing = 0.01", 'kernel = "cubic"']
+
+
+def test_where_nothing_is_resolved_no_spacing_is_advised():
+    *_, last = ladder_words(ladder(4.52, 2.26, 1.13), "")
+    assert last.startswith("nothing is resolved yet")
+    *_, last = ladder_words(ladder(3.6, 1.8, 0.9), "")
+    assert last.startswith("half that error")
