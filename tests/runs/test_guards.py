@@ -20,7 +20,7 @@ from psph.runs.advice import advice
 from psph.runs.guards import EVERY
 from psph.runs.post_mortem import PICTURE, REPORT
 from psph.runs.resume import take_up
-from psph.runs.start import resume
+from psph.runs.start import resume, run
 from psph.runs.worst_particle import find
 from psph.scene import Scene
 from psph.scene.fluid.advice import _friction
@@ -55,6 +55,17 @@ def push_once(monkeypatch, step, change):
         honest(self, *end)
 
     monkeypatch.setattr(Simulation, "step", meddled)
+
+
+def test_a_cold_cloud_that_falls_together_trips_none(tmp_path):
+    """Six times as fast as its sound at the start: 0.1 % of its energy are over the bound of that speed."""
+    case = load(ROOT / "run/cases/gravity/collapse.toml", ["time.end=1.31"])
+    scene = Scene(case)
+    assert scene.expected_speed > 5.0 * scene.sound_speed
+    run(case, tmp_path / "out", COMM, say=lambda *line: None)
+    log = Run(tmp_path / "out").log()
+    energy = sum(log[f"{name}_energy"] for name in ("kinetic", "potential", "thermal"))
+    assert log["step"][-1] >= EVERY and np.ptp(energy) < 0.01 * abs(energy[0])
 
 
 def test_a_sane_run_trips_none(tmp_path):
