@@ -51,10 +51,11 @@ def contradictions(case) -> list[InitErrorDetails]:
     wrong = list(_dimensions(case))
     more = (finding for rule in rules for finding in rule(case))
     findings = list(_sizes(case)) or [*wrong, *not_of(wrong, more)]
+    told = {(loc, says): value for loc, value, says in findings}  # several effects of one key say the same
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
-        for loc, value, says in findings
+        for (loc, says), value in told.items()
     ]
 
 
