@@ -221,6 +221,12 @@ class IdealGas(FreeMatter):
             yield (name,), told[name], f"there is no such side in {dimensions}D; give another"
         if missing or self.inflow is None or self.shape is None:
             return
+        if self.outflow == self.inflow:
+            yield (
+                ("outflow",),
+                self.outflow,
+                "is where it comes in; give another side, or remove one of the two",
+            )
         axis, sign = AXES.index(self.inflow[0]), 1.0 if self.inflow.endswith("lower") else -1.0
         told = self.density, self.pressure, self.thermal_energy, *(self.velocity or ())
         along = [0.0 if isinstance(one, str) else sign * one for one in self.velocity or ()]

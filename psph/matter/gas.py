@@ -24,7 +24,7 @@ from psph.physics.gas.state import (
 from psph.scene.mirrors import distances
 from psph.scene.particles import settled_at
 from psph.scene.parts.gas import GasPart
-from psph.scene.parts.gas_sides import sides_of
+from psph.scene.parts.gas_sides import side_warnings, sides_of
 from psph.scene.sites import sites_within
 from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
@@ -152,9 +152,11 @@ class IdealGases(Kind):
         return self.sizes.reach(max(float(part.guessed(self.scene.layout).max()) for part in self.parts))
 
     def warnings(self) -> Iterator[str]:
-        """A particle that stands so far from all others that few ranks can share the run."""
+        """A particle that stands so far from all others that few ranks can share the run; streams slower than
+        sound."""
         for part in self.parts:
             yield from part.stragglers(self.scene.layout)
+            yield from side_warnings(self.scene.layout, part)
 
     def renews(self, passes) -> tuple[str, ...]:
         """Lengths and what follows from them, and the heat, of which too low a prediction is lifted."""

@@ -9,6 +9,7 @@ from mpi4py import MPI
 from psph.case import CaseError, load
 from psph.runs.setup import compile_ahead
 from psph.scene import Scene, check
+from psph.scene.checks import warnings
 from psph.simulation.plan import make_plan
 from psph.theory.riemann import GasState, riemann
 
@@ -131,6 +132,7 @@ def test_a_shock_leaves_with_a_stream_faster_than_sound(tmp_path):
         (("ideal_gases.wind.jitter=0.1",), "layer by layer"),
         (('ideal_gases.wind.inflow="y.lower"',), "there is no such side in 1D"),
         (('ideal_gases.wind.outflow="z.upper"',), "there is no such side in 1D"),
+        (('ideal_gases.wind.outflow="x.lower"',), "is where it comes in; give another side"),
         (("ideal_gases.wind.shape.box.lower=[0.1]",), "does not begin there"),
         (("ideal_gases.wind.shape.box.upper=[0.1]",), "make it deeper"),
         (('space.periodic=["x"]',), "repeats or is a mirror"),
@@ -140,6 +142,33 @@ def test_what_cannot_come_in_is_told_in_a_line(tmp_path, sets, says):
     (tmp_path / "wind.toml").write_text(WIND)
     with pytest.raises(CaseError, match=says):
         check(Scene(load(tmp_path / "wind.toml", sets)))
+
+
+@pytest.mark.parametrize(
+    ("sets", "says"),
+    [
+        ((), []),
+        (
+            ("ideal_gases.wind.velocity=[0.5]",),
+            ["inflow: x.lower: its speed there is 0.5 m/s", "outflow: x.upper: its speed there is 0.5 m/s"],
+        ),
+        (
+            ('ideal_gases.wind.inflow="x.upper"', 'ideal_gases.wind.outflow="x.lower"')
+            + ("ideal_gases.wind.velocity=[-3.0]",),
+            [],
+        ),
+    ],
+)
+def test_a_stream_slower_than_sound_is_warned_of(tmp_path, sets, says):
+    """Sound goes at 0.928 m/s."""
+    (tmp_path / "wind.toml").write_text(WIND)
+    found = [*warnings(Scene(load(tmp_path / "wind.toml", sets)))]
+    assert len(found) == len(says)
+    assert all(part in line and "that of sound 0.92" in line for line, part in zip(found, says))
+
+
+def test_a_gas_at_rest_that_a_wind_carries_out_is_not_warned_of():
+    assert not [*warnings(Scene(load(f"{CASES}/gas/cloud_in_wind.toml")))]
 
 
 COARSE = "space.spacing=0.025", "ideal_gases.cloud.spacing=0.008333333333333333"

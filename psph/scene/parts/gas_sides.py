@@ -8,6 +8,7 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.scene.lattice import TOLERANCE
+from psph.scene.shapes import bounds
 
 
 class GasSide(NamedTuple):
@@ -81,6 +82,26 @@ def side_faults(layout: Any, part: Any) -> Iterator[str]:
             f"{part.key}.inflow: {part.table.inflow}: its box is {ends:g} m deep there, what is held before "
             f"that side takes {least:g} m; make it deeper"
         )
+
+
+def side_warnings(layout: Any, part: Any) -> Iterator[str]:
+    """A line for each side through which gas comes, or stands to go, slower than sound as it starts."""
+    if part.table.file or part.start.flows:
+        return
+    velocity, sound = part.table.velocity or np.zeros(layout.dimensions), part.wave_speed
+    for name, way in (("inflow", 1.0), ("outflow", -1.0)):
+        told = getattr(part.table, name)
+        if told is None:
+            continue
+        side = _side(layout, part, told, comes=False)
+        corners = np.array(bounds(part.shape))[:, side.axis]
+        speed = way * side.sign * float(velocity[side.axis])
+        if side.depth(corners).min() < side.deep and speed < sound:
+            yield (
+                f"{part.key}.{name}: {told}: its speed there is {speed:.4g} m/s, that of sound {sound:.4g}: "
+                "what is held before that side throws waves back; let it go faster than sound, or put the "
+                "side farther away"
+            )
 
 
 def _same(plane: Any, told: str) -> bool:
