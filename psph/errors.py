@@ -42,3 +42,7 @@ class Failed(Foreseen, RuntimeError):
     """What was begun could not be brought to its end."""
 
     exit_code = 3
+
+
+class Unbearable(Failed):
+    """A run whose matter cannot go on, on any machine: where many cases run, others go on."""

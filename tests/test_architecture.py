@@ -326,7 +326,7 @@ ROOMS = (
     *(f"simulation/{room}" for room in ("clamps", "end", "gas", "obstacles", "paddles", "wet_contact")),
     *("particles/others", "particles/partners", "parallel/reference", "parallel/partner"),
     *(f"output/gauges/{room}" for room in ("joint", "motion", "reaction", "stress")),
-    *("lab/battery/solid", "lab/bench/lammps_solid", "lab/bench/block", "lab/bench/blast"),
+    *("lab/battery/gas", "lab/battery/solid", "lab/bench/lammps_solid", "lab/bench/block", "lab/bench/blast"),
     *("lab/maps/elastic", "lab/report/elastic", "theory/stability/elastic", "theory/stability/zigzags"),
 )
 """The files of a kind, by how their names begin."""

@@ -31,6 +31,10 @@ OFFERED = {
         "run elastic solids in total and updated Lagrangian SPH instead",
         "psph.lab.battery.solid_kinds:solids",
     ),
+    "gases": Offer(
+        "run ideal gases with and without viscosity of shocks and conduction of heat instead",
+        "psph.lab.battery.gas_kinds:gases",
+    ),
     "elastic": Offer(
         "waves of an elastic lattice in total and updated Lagrangian SPH instead",
         "psph.lab.maps.elastic:elastic",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 
 from psph.engine.threads import in_rooms, in_threads
-from psph.errors import Failed
+from psph.errors import Unbearable
 from psph.parallel.reductions import exact_sums, largest
 from psph.particles.neighbours import Neighbours, empty
 from psph.particles.store import SPARE
@@ -36,7 +36,7 @@ MOST_LISTS = 60
 PREDICTED = f"predicted_{HEAT.name}"
 
 
-class Unsized(Failed):
+class Unsized(Unbearable):
     """A particle of a gas without a smoothing length, or without heat; raised on all ranks."""
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from psph.case.consistency import LARGEST_LOSS
-from psph.errors import Failed
+from psph.errors import Unbearable
 from psph.output.ledger import Ledger
 from psph.particles.store import Store
 from psph.simulation.cpu import Engine
@@ -34,7 +34,7 @@ CLOCK = (
 """Numbers of a simulation that its next step reads, or its user."""
 
 
-class BlowUp(Failed):
+class BlowUp(Unbearable):
     """A run in trouble, on whatever rank; raised on all."""
 
 

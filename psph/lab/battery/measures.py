@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from psph.fields import FLUID
-from psph.lab.battery import solid_measures
+from psph.lab.battery import gas_measures, solid_measures
 from psph.lab.battery.order import checkerboard, nearest, pieces, voids
 from psph.lab.battery.walls import lost
 from psph.lab.study.experiment import path_of, read_experiment
@@ -43,6 +43,7 @@ MEASURES = {
     "exact_error": "velocity against the exact solution, L2",
     "ghia_error": "velocity on the centre lines against Ghia and others, rms over the lid's",
     **solid_measures.OF_SOLIDS,
+    **gas_measures.OF_GASES,
 }
 """Every measure in words; a run has those that apply to its case."""
 
@@ -63,6 +64,8 @@ def measure(folder: Path, case, speed: float) -> dict[str, float]:
     run, scene = Run(folder), Scene(case)
     if any(part.moves_freely and part.keeps_form for part in scene.layout.parts):
         return solid_measures.measure_solids(run, case)
+    if case.ideal_gases:
+        return gas_measures.measure_gases(run, case)
     log, frames = run.log(), [run.frame(k) for k in range(len(run.times))]
     fluids = [{n: v[f["kind"] == FLUID] for n, v in f.items()} for f in frames]
     found = _of_log(log, speed, scene)

@@ -8,13 +8,14 @@ from pathlib import Path
 from psph.case import Case, CaseError, load
 from psph.engine.jit import SOURCES, processor
 from psph.engine.threads import threads
+from psph.errors import Unbearable
 from psph.lab.study.ladder import SPACING, Settings, overrides
 from psph.output.errors import OutputError
 from psph.parallel.slabs import TooManyRanks
 from psph.runs.memory_check import TooLittleMemory
 from psph.runs.start import Finished, run
 from psph.runs.watch import Stopped
-from psph.simulation.step import BlowUp, ParticleLost
+from psph.simulation.step import ParticleLost
 
 ENOUGH = 10.0
 """Seconds: a run that has taken so long is not timed again."""
@@ -96,7 +97,7 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
     try:
         while len(runs) < repeats and sum(map(_seconds, runs)) < ENOUGH:
             runs.append(run(case, folder, comm, overwrite=True, say=_silent))
-    except BlowUp as trouble:
+    except Unbearable as trouble:
         result = {"status": str(trouble), LOST: isinstance(trouble, ParticleLost)}
     except TooLittleMemory as trouble:
         return {"status": f"not possible here: {trouble}"}  # not kept: more may be free next time
