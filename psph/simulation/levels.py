@@ -90,7 +90,7 @@ class Resizing(Work):
         self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene))
         self._follow, self._go = settled(follow), settled(go_along)
         self._lanes = rank.plan.space.lanes
-        self.columns = np.zeros(0, np.int64)
+        self.columns, self._aside = np.zeros(0, np.int64), np.zeros(0)
         self.clock = LevelClock([one.pace for one in (self.plan, *self.plan.finer)], self.level_of)
         self.own_steps = self.clock.own
         self._loops = LevelLoops(self.plan, self.store, self.clock)
@@ -189,7 +189,9 @@ class Resizing(Work):
         for row in (row for name in OF_FORCES for row in store.rows[name]):
             store.data[row, self.columns] = 0.0
         self._leaders = Leaders(store.low, alike, others, store[LENGTH], listed)
-        self._scale = self.levels.layout.spacing * 0.5 ** self._followed(own, level[self.columns])
+        where = np.stack([x[store.inner][own] for x in listed], axis=1)
+        self._scale = self.levels.layout.spacing * 0.5 ** self._followed(where, level[self.columns])
+        self._aside = self._steps_aside(where, level[self.columns])
         seen = alike.lengths[own].astype(np.int64) + others.lengths[own]
         begins, many = np.cumsum(seen) - seen, np.zeros(len(own), np.int64)
         size = int(seen.sum())
@@ -199,26 +201,36 @@ class Resizing(Work):
             for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
         ]
 
-    def _followed(self, own: np.ndarray, level: np.ndarray) -> np.ndarray:
-        """The level of those whom some rows of a ``level`` (n,) follow: the next finer one in its region."""
+    def _followed(self, where: np.ndarray, level: np.ndarray) -> np.ndarray:
+        """The level of those whom particles of a ``level`` (n,) at some places (n, dim), m, follow: the next
+        finer one in its region."""
         found, finest = level - 1.0, self.levels.count - 1
         for one in range(finest):
             at_level = np.flatnonzero(level == one)
-            listed = (x[self.store.inner][own[at_level]] for x in self.store["listed_position"])
             if one:
-                away = self.levels.outside(one + 1, self.domain.inside(np.stack([*listed], axis=1)))
+                away = self.levels.outside(one + 1, self.domain.inside(where[at_level]))
                 at_level = at_level[away < 0.0]
             found[at_level] += 2.0
+        return found
+
+    def _steps_aside(self, where: np.ndarray, level: np.ndarray) -> np.ndarray:
+        """1 of those who see no end of a margin, else 0 (n,): behind it nobody is, and who steps there dies.
+        Where waves stir them, a margin loses more than are born, and in time the region does."""
+        found = np.ones(len(level))
+        for one in range(1, self.levels.count):
+            at_level = np.flatnonzero(level == one)
+            away = self.levels.outside(one, self.domain.inside(where[at_level]))
+            found[at_level[away > self.levels.margin(one) - self.levels.support(one)]] = 0.0
         return found
 
     # What they are like.
 
     def advance(self, time: float, dt: float, largest_speed: float) -> None:
-        """Who follows drifts with its velocity, and steps aside as others do."""
+        """Who follows drifts with its velocity, and steps aside as others do, but for the end of a margin."""
         view, names = self.store.view(), self.plan.carried
         shown = seen_at(view_of(names)(*(getattr(view, name) for name in names)), largest_speed)
         arrays = self.store["position"], self.store["velocity"]
-        self._go(self.columns, dt, self.plan.carriers, shown, *arrays)
+        self._go(self.columns, self._aside, dt, self.plan.carriers, shown, *arrays)
 
     def impose(self, simulation) -> None:
         """The state of who follows at the new time; collective."""
@@ -270,9 +282,10 @@ class Resizing(Work):
 
 
 @elementwise
-def go_along(columns, dt, effects, view, position, velocity):
-    """Move some ``columns`` by their velocity, and by what they step aside, in ``dt`` s."""
+def go_along(columns, aside, dt, effects, view, position, velocity):
+    """Move some ``columns`` by their velocity in ``dt`` s, and those with a 1 in ``aside`` by what they step
+    aside, not those with a 0."""
     for n in range(len(columns)):
         k = np.uint64(columns[n])
-        move = add(scale(at(velocity, k), dt), displacement(effects, take(view, k), dt))
+        move = add(scale(at(velocity, k), dt), displacement(effects, take(view, k), dt * aside[n]))
         put(position, k, add(at(position, k), move))
