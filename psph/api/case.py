@@ -126,14 +126,14 @@ class Case:
     def warnings(self, ranks: int = 1) -> list[str]:
         """What is doubtful, a line each.  Raises CaseError where the case cannot run."""
         from psph.runs.experiments import refuse_unfit_experiments
-        from psph.runs.forecast import long_run
+        from psph.runs.hints import plan_warnings
         from psph.scene import check
         from psph.simulation.plan import make_plan
 
         scene = self.scene()
         found = check(scene)
         refuse_unfit_experiments(scene)
-        return [*found, *long_run(scene, make_plan(scene), ranks)]
+        return [*found, *plan_warnings(scene, make_plan(scene), ranks)]
 
     def explain(self, ranks: int = 1):
         """What will be simulated, why, and at what cost, as data (:class:`psph.Explanation`); ``print`` shows

@@ -177,8 +177,6 @@ def _pass_lines(scene, plan: Plan, said: dict[str, list[str]]) -> Iterator[str]:
         often = "one at the middle of a step for the density, one at its end" if plan.midway else "one a step"
         yield f"Pass over the neighbours, {often}, {flops} flops a pair"
     yield from said["passes"]
-    if scene.case.time.passes == 2 and not plan.midway:
-        yield "Steps of one pass, for not all that is in the scene bears time.passes = 2"
 
 
 def _cost_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:

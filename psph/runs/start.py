@@ -25,8 +25,8 @@ from psph.runs.disk_check import check_disk
 from psph.runs.experiments import refuse_unfit_experiments
 from psph.runs.folder import alone_in, make_folder, prepare_folder, reopen_folder
 from psph.runs.footprint import slab_planes
-from psph.runs.forecast import long_run
 from psph.runs.guards import Guards
+from psph.runs.hints import plan_warnings
 from psph.runs.memory_check import check_memory, check_size
 from psph.runs.record import Record
 from psph.runs.resume import listed_particles, take_up, write_checkpoint
@@ -135,7 +135,7 @@ def _simulate(
     plan = make_plan(scene)
     particles = count_of(scene)
     check_room(particles, comm.size)
-    for warning in long_run(scene, plan, comm.size):
+    for warning in plan_warnings(scene, plan, comm.size):
         say(f"warning: {warning}", sys.stderr)
     check_memory(scene, plan, comm)
     check_disk(scene, plan, folder, comm, saved.state["time"] if saved else 0.0)

@@ -3,7 +3,7 @@
 import pytest
 from drafts import SQUARE, TANK, draft
 
-from psph.runs.hints import hints
+from psph.runs.hints import hints, plan_warnings
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 
@@ -58,3 +58,37 @@ def test_friction_that_is_held_for_less_than_asked_for_is_a_hint(tmp_path, asked
     lines = said(tmp_path, TANK, "scheme=stable", f"time.damping_every={asked}")
     told = [line for line in lines if line.startswith("time.damping_every")]
     assert [f"friction serves for {served} here" in line for line in told] == [True] * (served < asked)
+
+
+REFINED = """
+space = { dimensions = 2, spacing = 0.05, refine = [{ shape.box = { lower = [0.4, 0.0], upper = [1.0, 1.0] } }] }
+time.end = 0.1
+physics.gravity = [0.0, -9.81]
+fluids.water.shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
+[walls.tank]
+shape.difference.from.box = { lower = [-0.2, -0.2], upper = [1.2, 1.0] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.0, 1.0] } }]
+"""
+GAS = """
+scheme = "gas"
+space = { dimensions = 1, spacing = 0.02, lower = [0.0], upper = [2.0] }
+time.end = 0.1
+ideal_gases.air = { shape.box = { lower = [0.0], upper = [2.0] }, density = 1.3, pressure = 1.0 }
+"""
+
+
+@pytest.mark.parametrize("text", [REFINED, GAS], ids=["refined", "gas"])
+@pytest.mark.parametrize(
+    "asked", [{}, {"passes": 2}, {"damping_every": 4}, {"passes": 2, "damping_every": 4}]
+)
+def test_keys_of_the_time_that_do_nothing_are_warned_of_once(tmp_path, text, asked):
+    scene = Scene(draft(tmp_path, text, *(f"time.{key}={value}" for key, value in asked.items())))
+    plan = make_plan(scene)
+    told = [line.partition(" does nothing")[0] for line in plan_warnings(scene, plan, 1)]
+    assert told == [f"{scene.case.file}: time.{key}: {value}" for key, value in asked.items()]
+    assert not [line for line in hints(scene, plan) if line.startswith("time.")]
+
+
+def test_keys_of_the_time_that_do_something_are_not_warned_of(tmp_path):
+    scene = Scene(draft(tmp_path, TANK, "scheme=stable", "time.passes=2", "time.damping_every=4"))
+    assert not [*plan_warnings(scene, make_plan(scene), 1)]

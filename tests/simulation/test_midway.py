@@ -10,7 +10,7 @@ from simulation.test_paces import STIRRED
 from stores import seen
 
 from psph.case import load
-from psph.runs.explain import explain
+from psph.runs.hints import plan_warnings
 from psph.scene import Scene
 from psph.simulation.integrator import kick
 from psph.simulation.midway import HISTORY, drift_to_end, kick_to_middle
@@ -147,6 +147,6 @@ def test_it_asks_for_no_history_and_sends_no_more_than_what_has_moved(tmp_path):
 @pytest.mark.parametrize("name", ["solid", "soil"])
 def test_what_moves_by_more_than_rates_and_poses_keeps_one_pass(tmp_path, name):
     plan = begun(in_two(SCENES[name]), tmp_path).plan
-    said = "\n".join(explain(Scene(load(tmp_path / "case.toml")), 1))
-    assert "not all that is in the scene bears time.passes = 2" in said
+    [said] = plan_warnings(Scene(load(tmp_path / "case.toml")), plan, 1)
+    assert "time.passes: 2 does nothing: not all that is in the scene bears it" in said
     assert plan.midway is None and plan.cfl == SCENES[name]["time"].get("cfl", plan.cfl)
