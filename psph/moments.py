@@ -48,6 +48,10 @@ def seam_shares(kernel, spacing: float, dimensions: int) -> list[float]:
     return [along / total for total in accumulate(pressed)]
 
 
+HALVED_TO = 1e-9
+"""How near a smoothing length comes to its own, over that of the bulk."""
+
+
 @lru_cache
 def fastest_smoothing(kernel, spacing: float, dimensions: int) -> float:
     """The largest Σ dx^d (−W′/r) (1 − cos k·x) over the same lattice and all wave vectors k, 1/m².
@@ -98,3 +102,20 @@ def sites_around(kernel, spacing: float, dimensions: int):
 
 def _reach(kernel, spacing: float) -> int:
     return math.ceil(kernel.support / (kernel.inverse_h * spacing))
+
+
+@lru_cache
+def length_at_a_face(kernel, smoothing: float, dimensions: int) -> float:
+    """h/dx of a particle in the plane face of a lattice that has but half of its neighbours: where
+    h^d Σ_j W(r_ij, h), itself included, is ``smoothing``^d; ``kernel`` with h = 1 m.
+    """
+    fewest, most = smoothing, 2.0 * smoothing  # in one dimension a half has twice the length
+    reach = math.ceil(kernel.support * most)
+    sites = product(range(reach + 1), *(range(-reach, reach + 1) for _ in range(1, dimensions)))
+    away = np.array([math.hypot(*site) for site in sites])
+    while most - fewest > HALVED_TO * smoothing:
+        h = 0.5 * (fewest + most)
+        seen = away[away < kernel.support * h]
+        few = sum(kernel.w(r / h) for r in seen.tolist()) < smoothing**dimensions
+        fewest, most = (h, most) if few else (fewest, h)
+    return fewest

@@ -24,7 +24,8 @@ from psph.physics.gas.state import (
 from psph.scene.mirrors import distances
 from psph.scene.particles import settled_at
 from psph.scene.parts.gas import GasPart
-from psph.scene.parts.gas_sides import side_warnings, sides_of
+from psph.scene.parts.gas_faces import face_faults
+from psph.scene.parts.gas_sides import side_warnings, sides_of, unheld_warnings
 from psph.scene.sites import sites_within
 from psph.scene.steps import shorter_step
 from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
@@ -135,7 +136,7 @@ class IdealGases(Kind):
         return Created(number, found.position, found.velocity, found.density, values, of_parts=True)
 
     def faults(self) -> Iterator[str]:
-        """Particles of files outside the domain, and too few in all."""
+        """Particles of files outside the domain, too few in all, and faces that see too far."""
         layout = self.scene.layout
         for part in self.parts:
             yield from part.faults(layout)
@@ -145,6 +146,7 @@ class IdealGases(Kind):
                 f"{self.parts[0].key}: {count} particle{'s' * (count != 1)} in all, and space.smoothing asks "
                 f"for {least} neighbours of each; put more particles, or give a smaller space.smoothing"
             )
+        yield from face_faults(layout, self.parts, self.sizes)
 
     @property
     def farthest(self) -> float:
@@ -153,10 +155,11 @@ class IdealGases(Kind):
 
     def warnings(self) -> Iterator[str]:
         """A particle that stands so far from all others that few ranks can share the run; streams slower than
-        sound."""
+        sound, and gas that leaves beside them unheld."""
         for part in self.parts:
             yield from part.stragglers(self.scene.layout)
             yield from side_warnings(self.scene.layout, part)
+        yield from unheld_warnings(self.parts)
 
     def renews(self, passes) -> tuple[str, ...]:
         """Lengths and what follows from them, and the heat, of which too low a prediction is lifted."""

@@ -75,13 +75,14 @@ class Sizes(NamedTuple):
         for axis, period in zip("xyz", periods):
             if period is not None and CUTOFFS_A_PERIOD * found > period:
                 raise TooLarge(
-                    f"a particle's smoothing length is {longest:.4g} m: {CUTOFFS_A_PERIOD:g} times "
-                    f"its reach is more than the period along {axis}, {period:g} m; give a longer domain or "
-                    "more particles"
+                    f"space.periodic: {axis} is {period:g} m long, less than {CUTOFFS_A_PERIOD:g} times the "
+                    f"{found:.4g} m that a particle with a smoothing length of {longest:.4g} m reaches; give "
+                    "a longer domain (space.upper), a smaller space.spacing, or an earlier time.end"
                 )
         if found > self.between:
             raise TooLarge(
-                f"a particle's smoothing length is {longest:.4g} m: its reach is more than the distance of "
-                f"two mirrors, {self.between:g} m; put them farther apart, or give more particles"
+                f"space.symmetry: two mirrors are {self.between:g} m apart, less than the {found:.4g} m that "
+                f"a particle with a smoothing length of {longest:.4g} m reaches; put them farther apart, or "
+                "give a smaller space.spacing or an earlier time.end"
             )
         return found

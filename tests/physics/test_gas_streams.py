@@ -7,10 +7,12 @@ from gauging import start
 from mpi4py import MPI
 
 from psph.case import CaseError, load
+from psph.moments import length_at_a_face
 from psph.runs.setup import compile_ahead
 from psph.scene import Scene, check
 from psph.scene.checks import warnings
 from psph.simulation.plan import make_plan
+from psph.smoothing import kernel
 from psph.theory.riemann import GasState, riemann
 
 WIND = """
@@ -169,6 +171,46 @@ def test_a_stream_slower_than_sound_is_warned_of(tmp_path, sets, says):
 
 def test_a_gas_at_rest_that_a_wind_carries_out_is_not_warned_of():
     assert not [*warnings(Scene(load(f"{CASES}/gas/cloud_in_wind.toml")))]
+
+
+NARROW = "space.spacing=0.05", "space.upper=[2.0, 0.6]", "ideal_gases.wind.shape.box.upper=[2.0, 0.6]"
+OPEN = "space.periodic=[]", "ideal_gases.wind.velocity=[3.0, 0.0]"
+MIRRORS = 'space.symmetry=["y.lower", "y.upper"]'
+TIGHT = "space.spacing=0.05", "space.upper=[2.0, 0.2]", "ideal_gases.wind.shape.box.upper=[2.0, 0.2]"
+
+
+def test_the_longer_smoothing_lengths_at_an_open_face_are_known_before_a_run(tmp_path):
+    """As the first that a run finds."""
+    simulation = wind(tmp_path, TUNNEL)
+    face = 0.04 * length_at_a_face(kernel("wendland-c2", 1.0, 2), 1.4, 2)
+    assert simulation.store.shown("smoothing_length").max() == pytest.approx(face, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("sets", "says"),
+    [
+        (NARROW, "space.upper: the domain is 0.6 m long along the periodic axis y; at open faces"),
+        ((*TIGHT, *OPEN, MIRRORS), "space: mirrors at y = 0 and 0.2 m; at open faces of gases"),
+    ],
+)
+def test_a_domain_too_short_for_what_is_at_an_open_face_is_refused(tmp_path, sets, says):
+    """The bulk fits into it: where nothing comes or goes, and x repeats too, it is good."""
+    (tmp_path / "wind.toml").write_text(TUNNEL)
+    with pytest.raises(CaseError, match=says):
+        check(Scene(load(tmp_path / "wind.toml", sets)))
+    (tmp_path / "wind.toml").write_text(TUNNEL.replace("inflow", "# ").replace("outflow", "# "))
+    closed = [one for one in sets if "periodic" not in one]
+    periods = '["x"]' if MIRRORS in sets else '["x", "y"]'
+    check(Scene(load(tmp_path / "wind.toml", (*closed, f"space.periodic={periods}"))))
+
+
+def test_a_gas_that_leaves_unheld_beside_one_that_is_held_is_warned_of(tmp_path):
+    (tmp_path / "wind.toml").write_text(SHOCK.replace("SPEED", "3.5"))
+    assert not [*warnings(Scene(load(tmp_path / "wind.toml")))]
+    head, _, tail = SHOCK.replace("SPEED", "3.5").rpartition('outflow = "x.upper"\n')
+    (tmp_path / "wind.toml").write_text(head + tail)
+    [line] = warnings(Scene(load(tmp_path / "wind.toml")))
+    assert "ideal_gases.thin.outflow: ideal_gases.wind leaves through x.upper, this gas does not" in line
 
 
 COARSE = "space.spacing=0.025", "ideal_gases.cloud.spacing=0.008333333333333333"

@@ -1,7 +1,7 @@
 """Sides of the domain through which a gas comes and goes."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,6 +102,19 @@ def side_warnings(layout: Any, part: Any) -> Iterator[str]:
                 "what is held before that side throws waves back; let it go faster than sound, or put the "
                 "side farther away"
             )
+
+
+def unheld_warnings(parts: Sequence[Any]) -> Iterator[str]:
+    """A line for each gas without a side to leave through, beside one that leaves: what of it comes to that
+    side is not held there."""
+    sides = {part.table.outflow: part.key for part in parts if part.table.outflow}
+    for part in parts:
+        for told, key in sides.items():
+            if part.table.outflow is None and part.table.inflow != told:
+                yield (
+                    f"{part.key}.outflow: {key} leaves through {told}, this gas does not: what of it comes "
+                    f'there bursts into the vacuum and sends waves back; give "{told}", unless none does'
+                )
 
 
 def _same(plane: Any, told: str) -> bool:
