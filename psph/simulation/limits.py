@@ -10,6 +10,11 @@ def step_limits(plan, speed: float, acceleration: float) -> Iterator[tuple[float
     """Every limit of the time step with its name, s, for the largest |v| and |a|."""
     for kind in plan.matter:
         yield from kind.limits(plan, speed, acceleration)
+    yield from plan.limits_of_effects
+
+
+def limits_of_effects(plan) -> Iterator[tuple[float, str]]:
+    """Those that effects set, s, whatever |v| and |a| are."""
     frictions = []
     heeded = [effect for kind in plan.matter for effect in kind.heeds(plan)]
     for call in plan.called:

@@ -30,7 +30,7 @@ from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK
 from psph.scene.gauging import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
-from psph.simulation.limits import step_limits
+from psph.simulation.limits import limits_of_effects, step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
 from psph.simulation.midway import HISTORY, is_midway
 from psph.simulation.movement import carried_fields
@@ -246,6 +246,11 @@ class Plan:
                 )
                 operations += counted / one.every
         return round(operations)
+
+    @cached_property
+    def limits_of_effects(self) -> tuple[tuple[float, str], ...]:
+        """Limits of the time step that effects set, s, with their names: the same in each step."""
+        return tuple(limits_of_effects(self))
 
     def longest_step(self, speed: float, acceleration: float) -> tuple[float, str]:
         """Δt in s and the name of the limit that sets it, for the largest |v| and |a|."""
