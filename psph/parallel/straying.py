@@ -1,6 +1,7 @@
 """How long the lists hold where each particle has its own size: a bound on how far each has strayed."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,19 @@ from psph.particles.sizes import Sizes
 ENOUGH = 1.1
 """Growth left to all by their own ways alone, with which nobody looks how far neighbours have come."""
 
+ROUNDING = 1e-9
+"""Part of a support by which a bound is beyond what is bounded, more than both are rounded by."""
+
+
+class Look(NamedTuple):
+    """What was seen when neighbours were last looked at: that they had come ``apart`` from each other by no
+    more than this, over their support, the ``narrowest`` of all supports, m, and where own particles stood,
+    ``places`` (dim,) (owned,) m."""
+
+    apart: float
+    narrowest: float
+    places: tuple[np.ndarray, ...]
+
 
 class Straying:
     """Keeps the lists of ``domain`` while they reach as far as particles have strayed and grown.
@@ -22,9 +36,10 @@ class Straying:
     far each has strayed is measured where it stands at the end of a step, less the way that all matter has
     gone in the mean: a cloud that drifts as one needs no new lists for it.  Where that is too much, what
     counts is how far neighbours have come from each other at the most, over their sizes: a gas that a shock
-    drives on goes ``together``.  Beside mirrors that is not asked: an image goes the other way.  No
-    particle is more than ``farthest`` m from where it was listed.  By ``growth`` (owned,) a smoothing length
-    may be larger than then for lists to hold.  The same on every rank.
+    drives on goes ``together``.  Beside mirrors that is not asked: an image goes the other way.  Where sizes
+    stay, nobody looks at that again before a bound by the last look asks for it.  No particle is more than
+    ``farthest`` m from where it was listed.  By ``growth`` (owned,) a smoothing length may be larger than
+    then for lists to hold.  The same on every rank.
     """
 
     def __init__(self, domain: Domain, sizes: Sizes, together: bool):
@@ -32,6 +47,7 @@ class Straying:
         self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
         self._drift, self._since = (0.0,) * domain.store.dimensions, 0.0
         self.growth = np.zeros(0)
+        self._look: Look | None = None
 
     @property
     def farthest(self) -> float:
@@ -52,6 +68,7 @@ class Straying:
         mass, *momentum = exact_sums(self.domain.comm, np.stack(terms, axis=1)).tolist()
         self._drift, self._since = tuple(p / mass for p in momentum), 0.0
         self.growth = np.full(store.owned, self._sizes.growth_left(0.0, 0.0))
+        self._look = None
 
     def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
         """True: it is measured once particles have moved by the step of ``dt`` s, see :meth:`reach`."""
@@ -71,6 +88,10 @@ class Straying:
         near = apart2 < self.farthest**2
         enough = ENOUGH if self._sizes.grow else self._sizes.least_growth
         if near and self._together and not self._sizes.growth_left(most, most) > enough:
+            if self._look is not None and most < math.inf:
+                bound = self._bound(self._look)
+                if self._sizes.growth_left(bound, bound) > self._sizes.least_growth:
+                    return True
             most = min(most, self._see_who_goes_together())
         return near and self._sizes.growth_left(most, most) > self._sizes.least_growth
 
@@ -84,10 +105,28 @@ class Straying:
         length = store[self._sizes.listed][: store.total]
         share, across = shares_moved(store.data, rows, length, domain.starts, domain.planes, domain.grid)
         share = share[store.inner] / support
-        most, across = largest(domain.comm, [share.max(initial=0.0), across / support]).tolist()
+        told = share.max(initial=0.0), across / support, -length.min(initial=math.inf)
+        most, across, narrowest = largest(domain.comm, [*told]).tolist()
+        if not self._sizes.grow:
+            places = tuple(x[store.inner].copy() for x in store["position"])
+            self._look = Look(max(most, across), -narrowest * support, places)
         found = self._sizes.growth_left(np.maximum(share, across), 0.0)
         self.growth = np.maximum(self.growth, found)
         return 0.5 * max(most, across)
+
+    def _bound(self, look: Look) -> float:
+        """Half of the most that a look would find now, over their support, at the most; collective.
+
+        The range of a way in a box of particles, by which neighbours are told, is wider than it was then by
+        the range R_d of the ways since then of all particles, at the most: so with the narrowest support r
+        none have come apart by more than A + |R|/r, A then.  Where that suffices a look would say the same,
+        so a run that goes on without it, from a checkpoint, has the same lists.
+        """
+        store = self.domain.store
+        ways = [x[store.inner] - then for x, then in zip(store["position"], look.places)]
+        ends = [end.max(initial=-math.inf) for way in ways for end in (way, -way)]
+        ranges = largest(self.domain.comm, ends).reshape(-1, 2).sum(axis=1)
+        return 0.5 * (look.apart + math.hypot(*ranges) / look.narrowest + ROUNDING)
 
     def state(self) -> dict:
         """What :meth:`reach` rests on beside the particles."""
@@ -95,4 +134,4 @@ class Straying:
 
     def restore(self, state: dict) -> None:
         """Go on as if the lists had been in use since they were made."""
-        self._drift, self._since = tuple(state["drift"]), state["since"]
+        self._drift, self._since, self._look = tuple(state["drift"]), state["since"], None

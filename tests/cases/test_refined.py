@@ -87,18 +87,18 @@ def leading(simulation):
     return *found, np.array([one.level for one in species])[group[own]]
 
 
-def begun(case, velocity, pressure):
+def begun(case, velocity, pressure, comm=MPI.COMM_SELF):
     """The simulation of a case that begins with a ``velocity`` (n, dim) and ``pressure`` (n,) of places."""
     scene = Scene(case)
     plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
+    store = create_particles(scene, plan, comm)
     x = store.owned_rows("position")
     for name in ("velocity", "predicted_velocity"):
         for own, told in zip(store[name], velocity(x).T):
             own[store.inner] = told
     c = plan.extremes.sound_speed
     store["density"][store.inner] = 1000.0 + pressure(x) / c**2
-    return Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    return Simulation(scene, plan, store, comm, Ledger())
 
 
 @pytest.mark.parametrize("factor", [2, pytest.param(4, marks=LONG)])
