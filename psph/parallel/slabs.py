@@ -31,7 +31,8 @@ class TooManyRanks(Refused):
 def check_ranks(ranks: int, planes: int) -> None:
     """Raise TooManyRanks, with the largest usable number, where a rank would get no plane."""
     if ranks > planes:
-        raise TooManyRanks(f"{ranks} ranks for {planes} planes of cells: use at most {planes} ranks")
+        most = f"at most {planes} rank{'s' * (planes != 1)}"
+        raise TooManyRanks(f"{ranks} ranks for {planes} plane{'s' * (planes != 1)} of cells: use {most}")
 
 
 def partition(costs: np.ndarray, ranks: int) -> np.ndarray:
@@ -60,7 +61,16 @@ def dearest(costs: np.ndarray, bounds: np.ndarray) -> int:
 
 
 def rebalanced(costs: np.ndarray, bounds: np.ndarray | None, ranks: int) -> np.ndarray:
-    """New slabs when they pay, else the old ones: the same decision on every rank."""
+    """New slabs when they pay, else the old ones: the same decision on every rank.
+
+    Raises TooManyRanks, also where a run had planes enough before: cells are as wide as the particle that
+    reaches farthest, and only where particles are.
+    """
+    if bounds is not None and ranks > len(costs):
+        raise TooManyRanks(
+            f"it has come from {bounds[-1]} planes of cells to {len(costs)}, fewer than its {ranks} ranks: "
+            "particles reach farther or draw together; resume it on fewer, from its last checkpoint"
+        )
     best = partition(costs, ranks)
     if bounds is None or bounds[-1] != len(costs):
         return best

@@ -54,6 +54,13 @@ def test_too_many_ranks_names_the_largest_number():
         partition(np.ones(3), 4)
 
 
+def test_a_run_whose_planes_grow_too_few_says_how_to_go_on():
+    with pytest.raises(TooManyRanks, match="from 5 planes of cells to 1, fewer than its 2 ranks.* resume it"):
+        rebalanced(np.ones(1, np.int64), np.array([0, 2, 5]), 2)
+    with pytest.raises(TooManyRanks, match="2 ranks for 1 plane of cells: use at most 1 rank$"):
+        rebalanced(np.ones(1, np.int64), None, 2)
+
+
 def test_slabs_move_only_when_it_pays():
     old = np.array([0, 5, 10])
     assert rebalanced(np.full(10, 100), old, 2) is old
