@@ -183,6 +183,6 @@ def carried(run, begin=0.7):
 def test_waves_carry_off_light_blocks_and_leave_heavy_ones(tmp_path):
     """By Hudson those of H/(ΔD) 8.8 go: measured 0.19 to 0.27 m on 29 November 2026, 0.25 to 0.3 m before.  The
     control, stones of 0.54: 0.006 m at most."""
-    assert min(carried(finished("coast/armour", tmp_path / "light"))) > 0.1
+    assert min(carried(finished("coast/armour", tmp_path / "light"))) > 0.15
     heavy = [f"bodies.stone_{k}.density=2650.0" for k in (1, 2, 3, 4)]
     assert max(carried(finished("coast/armour", tmp_path / "heavy", *heavy))) < 0.015
