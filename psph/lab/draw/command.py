@@ -31,7 +31,7 @@ def draw(case: Case, folder: Path) -> Iterator[str]:
     refuse_without_packages("check --draw")
     layout = lay_out(case)
     start = start_of(layout)
-    marks = [*names_of(layout, start), *marks_of(layout, _hung(case))]
+    marks = [*names_of(start), *marks_of(layout, _hung(case))]
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -49,8 +49,8 @@ def draw(case: Case, folder: Path) -> Iterator[str]:
         path.with_suffix(".html"),
         title=case.title or case.name,
         file=case.file,
-        count=f"{len(start.frame['id']):,}",
-        spacing=layout.spacing,
+        count=f"{start.count:,}",
+        spacing=start.apart,
         picture=shown,
         turning=interactive(turning(layout, start, marks), "turning"),
     )

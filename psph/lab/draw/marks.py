@@ -54,10 +54,10 @@ def _mark(key: str, says: str, lines) -> Mark:
     return Mark(key, says, [np.array(line, float).reshape(-1, len(line[0])) for line in lines])
 
 
-def names_of(layout: Layout, start: AtStart) -> list[Mark]:
+def names_of(start: AtStart) -> list[Mark]:
     """A mark on each part, at its particle nearest to the middle of all."""
     found = []
-    for number, part in enumerate(layout.parts[: layout.parts.ends.start]):
+    for number, part in enumerate(start.parts):
         places = start.frame["position"][start.frame["group"] == number]
         if len(places):
             away = ((places - places.mean(axis=0)) ** 2).sum(axis=1)

@@ -13,6 +13,7 @@ from psph.lab.report.turning import EYE, short
 from psph.output.pictures import style
 from psph.output.pictures.walls import surface
 from psph.scene.layout import Layout
+from psph.scene.parts.part import Part
 
 PARTICLES, TRIANGLES = 12_000, 60_000
 """Of a part, at most: a browser turns them without a pause."""
@@ -44,13 +45,13 @@ def turning(layout: Layout, start: AtStart, marks: list[Mark]):
 
 def _parts(go, layout: Layout, start: AtStart) -> Iterator:
     groups = start.frame["group"]
-    colours = iter(style.LINES * len(start.names))
-    for number, name in enumerate(start.names):
-        part, rows = layout.parts[number], np.flatnonzero(groups == number)
+    colours = iter(style.LINES * len(start.parts))
+    for number, part in enumerate(start.parts):
+        rows = np.flatnonzero(groups == number)
         free = len(rows) and start.frame["kind"][rows[0]] == FLUID
         colour = next(colours) if free else style.WHOLE if part.moves_whole else style.WALLS
-        label = {"name": f"{part.key} ({len(rows):,})", "legendgroup": name, "showlegend": True}
-        faces = _faces(layout, number) if not free else None
+        label = {"name": f"{part.key} ({len(rows):,})", "legendgroup": part.name, "showlegend": True}
+        faces = _faces(layout, part) if not free else None
         if faces is not None:
             x, y, z = short(faces.reshape(-1, 3)).T
             i, j, k = np.arange(len(x)).reshape(-1, 3).T
@@ -63,11 +64,11 @@ def _parts(go, layout: Layout, start: AtStart) -> Iterator:
         yield _scatter(go, places, mode="markers", marker={"size": 3, "color": colour}, **label)
 
 
-def _faces(layout: Layout, number: int) -> np.ndarray | None:
+def _faces(layout: Layout, part: Part) -> np.ndarray | None:
     """The surface of a part in 3D, drawn coarsely enough; None where that is too fine, or flat."""
-    if layout.dimensions < 3 or not layout.parts[number].drawn:
+    if layout.dimensions < 3 or not part.drawn:
         return None
-    shape, dx = layout.parts[number].shape, layout.spacing
+    shape, dx = part.shape, layout.spacing
     for coarse in (2.0, 4.0, 8.0, 16.0):
         faces = surface(shape, coarse * dx, np.array(layout.lower), np.array(layout.upper))
         if 0 < len(faces) <= TRIANGLES:

@@ -43,7 +43,7 @@ def picture(layout: Layout, start: AtStart, marks: list[Mark]) -> Figure:
     page = style.LEFT + width + scale.width, style.TOP + height + style.BOTTOM
     with style.look():
         title = layout.case.title or layout.case.name
-        count = f"{len(start.frame['id']):,} particles at the start, {layout.spacing:g} m apart"
+        count = f"{start.count:,} particles at the start, {start.apart} m apart"
         figure = style.sheet(*page, title, count)
         axes = style.panel(figure, style.LEFT, style.TOP, width, height)
         panel.draw(axes, start.frame | {"lines": {}}, scale, True, True)
@@ -70,7 +70,7 @@ def _panel(layout: Layout, case: dict, start: AtStart, room: Room, points: list[
 
 def _scale(case: dict, start: AtStart) -> Scale:
     scale = scale_of(quantity(None, case, "group"), [])
-    walls = () if len(start.names) == len(scale.names) else (("walls", style.WALLS),)
+    walls = () if len(start.parts) == len(scale.names) else (("walls", style.WALLS),)
     return scale._replace(others=(*scale.others, *walls))
 
 

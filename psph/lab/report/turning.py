@@ -9,9 +9,9 @@ from psph.case.keys import AXES
 from psph.fields import WALL
 from psph.output.pictures import style
 from psph.output.pictures.groups import first_whole, wholes_of
+from psph.output.pictures.once import once, reads_of
 from psph.output.pictures.view import spread
 from psph.output.reader import Run
-from psph.output.sizes import of_sizes, widths
 
 FRAMES, PARTICLES, WALL_PARTICLES = 8, 8000, 4000
 """Frames, particles of a frame, and of its walls, at most: a browser turns them without a pause."""
@@ -35,11 +35,11 @@ def turning(run: Run):
     import plotly.graph_objects as go
 
     shown = spread(len(run.times), FRAMES)
-    space = tomllib.loads(run.case_text)["space"]
-    frames = [_particles(run, k, space) for k in shown]
+    case = tomllib.loads(run.case_text)
+    frames = [_particles(run, k, case) for k in shown]
     fastest = max((speed.max(initial=0.0) for _, speed, _ in frames), default=1.0) or 1.0
     usual = float(np.median(frames[-1][2])) if len(frames[-1][2]) else 1.0
-    rigid = _Rigid(run, shown)
+    rigid = _Rigid(run, shown, case)
     dimensions = rigid.standing.shape[1]
     kind = go.Scatter3d if dimensions == 3 else go.Scattergl
     size = 3 if dimensions == 3 else 5
@@ -113,23 +113,22 @@ def _lines(run: Run, k: int) -> np.ndarray | None:
     return np.concatenate([gap, *(part for points, _ in run.lines(k).values() for part in (points, gap))])
 
 
-def _particles(run: Run, k: int, space: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _particles(run: Run, k: int, case: dict) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places, speeds and widths, m, of all but walls in a frame, no more than a browser takes."""
-    frame = run.frame(k, "position", "velocity", "kind", *of_sizes(run.fields))
+    frame = once(run.frame(k, "position", "velocity", *reads_of(case, run.fields)), case)
     chosen = _some(np.flatnonzero(frame["kind"] != WALL), PARTICLES)
     speed = np.linalg.norm(frame["velocity"][chosen], axis=1)
-    return frame["position"][chosen], speed, widths(frame, space)[chosen]
+    return frame["position"][chosen], speed, frame["width"][chosen]
 
 
 class _Rigid:
     """Places (n, dim) of what is rigid: of walls that stand, and in each frame of moving ``walls`` and of
     ``wholes``."""
 
-    def __init__(self, run: Run, shown):
-        case = tomllib.loads(run.case_text)
+    def __init__(self, run: Run, shown, case: dict):
         self.has_wholes = bool(wholes_of(case))
         first = first_whole(case) if self.has_wholes else math.inf
-        frames = [run.frame(k, "position", "kind", "group", "id") for k in shown]
+        frames = [once(run.frame(k, "position", "kind", "group", "id"), case) for k in shown]
         moved = set().union(*(_moved(frames[0], frame) for frame in frames[1:]))
         moving = {group for group in moved if group < first}
         self.has_moving_walls = bool(moving)

@@ -21,6 +21,9 @@ NARROWEST = 1e-3
 STEEP = 1e3
 """Ratio of the largest to the smallest number from which on the axis is logarithmic."""
 
+HEAT, DEVIATION = "thermal_energy", "largest deviation of the density"
+"""The column of log.csv that runs of gases have, J, and a chart that says nothing of them."""
+
 PLACES = ("centre",)
 """Quantities whose values along different axes have nothing in common but their unit."""
 SEEN = 0.2
@@ -107,7 +110,7 @@ def with_measured(charts: list[Chart], of: str, experiments: Iterable) -> list[C
 
 
 def log_charts(run: Run, dimensions: int) -> list[Chart]:
-    """Energies, largest speed, deviation of the density, time step."""
+    """Energies, largest speed, deviation of the density where there is one, time step."""
     log = run.log()
     if not log or not len(log["time"]):
         return []
@@ -116,12 +119,15 @@ def log_charts(run: Run, dimensions: int) -> list[Chart]:
     energies = {"kinetic": kinetic}
     if potential.any():
         energies["potential, change"] = potential
-    return [
+    if HEAT in log:
+        energies["heat, change"] = log[HEAT] - log[HEAT][0]
+    charts = [
         Chart("energy", ("J/m²", "J/m", "J")[dimensions - 1], time, energies, grows=True),
         Chart("largest speed", "m/s", time, {"": log["largest_speed"]}, grows=True),
-        Chart("largest deviation of the density", "%", time, {"": 100 * log["density_error"]}, grows=True),
+        Chart(DEVIATION, "%", time, {"": 100 * log["density_error"]}, grows=True),
         Chart("time step", "s", time, {"": np.where(log["dt"] > 0, log["dt"], np.nan)}, grows=True),
     ]
+    return [chart for chart in charts if chart.title != DEVIATION or log["density_error"].any()]
 
 
 def picture(charts: list[Chart], title: str, subtitle: str) -> Figure:

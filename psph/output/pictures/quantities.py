@@ -10,7 +10,7 @@ from psph.output.errors import NotThere
 from psph.output.pictures.groups import matter_of, spreading_of, wholes_called
 from psph.output.pictures.vorticity import vorticity
 from psph.output.reader import Run
-from psph.output.sizes import LENGTH, widths
+from psph.output.sizes import LENGTH
 
 VELOCITY, SPEED, VORTICITY, GROUP = "velocity", "speed", "vorticity", "group"
 """The field, its size under the name that people use, its curl, and the number of a fluid or wall."""
@@ -21,7 +21,8 @@ VON_MISES, DEVIATOR = "von_mises", "deviator"
 
 
 class Quantity(NamedTuple):
-    """Something to colour by: ``values`` (n,) in ``unit`` of a frame that holds the fields ``reads``.
+    """Something to colour by: ``values`` (n,) in ``unit`` of a frame that holds the fields ``reads``, and
+    the ``width`` of particles.
 
     ``name`` stands in the names of files.  ``signed``: its sign matters as much as its size: zero is in the
     middle of its colours.  ``names`` has those of the fluids where it counts them, ``whole`` the
@@ -109,12 +110,12 @@ def _vorticity(case: dict) -> Quantity:
 
     def values(frame: dict) -> np.ndarray:
         fluid = np.isin(frame["kind"], (FLUID, GAS))
-        width = widths(frame, space)[fluid]
+        width = frame["width"][fluid]
         if LENGTH in frame:
             volume = width**dimensions
         else:
             rest = np.array([material["density"] for _, material in flowing])
-            volume = rest[frame["group"][fluid]] / frame["density"][fluid] * space["spacing"] ** dimensions
+            volume = rest[frame["group"][fluid]] / frame["density"][fluid] * width**dimensions
         reach = 2.0 * space["smoothing"] * width
         omega = vorticity(frame["position"][fluid], frame["velocity"][fluid], volume, reach, periods)
         sizes = np.full(len(fluid), np.nan)

@@ -35,11 +35,13 @@ class SpreadMass:
         self.scene = exported.scene
 
     def of(self, frame: dict) -> tuple[dict, np.ndarray, np.ndarray]:
-        """The particles of ``frame`` that are not walls, their masses (n,), kg, and h (n,), m."""
+        """The particles of ``frame`` that are not walls, their masses (n,), kg, and h (n,), m; of finer
+        regions by the ``width`` of each."""
         here = {name: rows[frame["kind"] != WALL] for name, rows in frame.items()}
-        masses, own = self._exported.masses, self.scene.smoothing_length
-        mass = here[MASS] if MASS in here else masses[here["group"]]
-        return here, mass, here[LENGTH] if LENGTH in here else np.full(len(mass), own)
+        masses, part = self._exported.masses, here["width"] / self.scene.spacing
+        if LENGTH in here:
+            return here, here[MASS] if MASS in here else masses[here["group"]], here[LENGTH]
+        return here, masses[here["group"]] * part**self.scene.dimensions, self.scene.smoothing_length * part
 
     @cached_property
     def unit_kernel(self):

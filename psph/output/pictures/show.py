@@ -14,6 +14,7 @@ from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
 from psph.output.pictures.groups import first_whole, wholes_of
 from psph.output.pictures.mirrors import mirrors_of, with_mirrors
+from psph.output.pictures.once import once, reads_of
 from psph.output.pictures.quantities import FEW_SAMPLES, quantity, usual
 from psph.output.pictures.raster import DENSITY, column_density, filled
 from psph.output.pictures.scale import Scale, scale_of
@@ -21,7 +22,7 @@ from psph.output.pictures.sight import Sight
 from psph.output.pictures.view import Panel, around_most, box_around, room_of, spread
 from psph.output.progress import with_progress
 from psph.output.reader import Run
-from psph.output.sizes import LENGTH, of_sizes, widths
+from psph.output.sizes import LENGTH
 
 LARGEST = (7.6, 5.6)
 """Width and height that all panels together may take, inches."""
@@ -83,10 +84,9 @@ class Show:
         return self.panel.of(self._whole(k)) | {"lines": self.run.lines(k)}
 
     def _whole(self, k: int) -> dict:
-        reads = {"position", "kind", *self.quantity.reads, *self._told_apart, *of_sizes(self.run.fields)}
-        frame = self.run.frame(k, *reads)
-        width = widths(frame, self.case["space"])
-        return frame | {"values": self.quantity.values(frame), "width": width}
+        reads = {"position", *self.quantity.reads, *self._told_apart, *reads_of(self.case, self.run.fields)}
+        frame = once(self.run.frame(k, *reads), self.case)
+        return frame | {"values": self.quantity.values(frame)}
 
     @property
     def _told_apart(self) -> tuple[str, ...]:

@@ -148,7 +148,7 @@ class View3D:
             return
         shine = {"ambient": 0.5, "diffuse": 0.75, "specular": 0.15, "specular_power": 15.0}
         if self.smooth:
-            water = fluid_surface(places, self.room.spacing, values)
+            water = fluid_surface(places, self.room.spacing, values, width)
             if water is not None:
                 water["rgb"] = scale.rgb(water["values"])
                 shine |= {"specular": 0.5, "specular_power": 40.0}

@@ -11,10 +11,14 @@ from psph.errors import Refused
 from psph.output.errors import NotThere
 from psph.output.pictures import names
 from psph.output.pictures.carried import Carried, carried_parts
+from psph.output.pictures.once import once
 from psph.output.pictures.walls import Triangles
 from psph.output.progress import with_progress
 from psph.output.reader import Run
 from psph.output.xdmf import ENDING, HEAD, TAIL, item
+
+READS = ("position", "kind", "group", "id")
+"""Fields of frames."""
 
 _GRID = """      <Grid Name="{name}" GridType="Uniform">
         <Time Value="{time!r}"/>
@@ -44,7 +48,7 @@ def triangles(folder: Path) -> Path:
         raise Refused(f"plot --solids: the run has {case['space']['dimensions']} dimensions; leave it out")
     if not len(run.times):
         raise NotThere(f"{run.path}: no frame yet; wait for the first one")
-    start = run.frame(0, "position", "kind", "group", "id")
+    start = once(run.frame(0, *READS), case)
     parts = list(carried_parts(case, start, case["space"]["spacing"], run.folder))
     if not parts:
         raise Refused("plot --solids: the run has no walls and no bodies; leave it out")
@@ -53,7 +57,7 @@ def triangles(folder: Path) -> Path:
     fresh = path.with_name(f"{path.name}.new")
     with h5py.File(fresh, "w") as file:
         grids = [
-            _grid(file, path, parts, run, k)
+            _grid(file, path, parts, run, case, k)
             for k in with_progress(range(len(run.times)), "moving walls", "frames")
         ]
     os.replace(fresh, path)
@@ -62,9 +66,9 @@ def triangles(folder: Path) -> Path:
     return index
 
 
-def _grid(file: h5py.File, path: Path, parts: list[Carried], run: Run, k: int) -> str:
+def _grid(file: h5py.File, path: Path, parts: list[Carried], run: Run, case: dict, k: int) -> str:
     """The element of frame ``k``, whose arrays are written into ``file``."""
-    frame = run.frame(k, "position", "group", "id")
+    frame = once(run.frame(k, *READS), case)
     faces = [part.at(frame) for part in parts]
     arrays = dict(zip(("points", "corners"), _joined(np.concatenate(faces))))
     arrays["group"] = np.repeat([part.group for part in parts], [len(one) for one in faces]).astype(np.int64)

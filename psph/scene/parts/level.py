@@ -24,6 +24,11 @@ class LevelPart(Part):
     drawn = False
     jitter = 0.0
 
+    @property
+    def origin(self) -> int:
+        """The number of its fluid."""
+        return self.source
+
     def claimed(self, layout, grid, tolerance: float) -> np.ndarray:
         """No site."""
         return np.zeros((), bool)

@@ -90,6 +90,16 @@ class Part:
         return self.number
 
     @property
+    def level(self) -> int:
+        """That of its particles among sizes, 0 the coarsest (psph.scene.levels)."""
+        return 0
+
+    @property
+    def follows(self) -> bool:
+        """Whether its particles follow those of another size, which are where they are."""
+        return False
+
+    @property
     def of_another(self) -> bool:
         """Whether it is clamped, and so a part of another."""
         return self.whole != self.number

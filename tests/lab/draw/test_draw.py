@@ -129,7 +129,7 @@ def test_all_particles_are_shown_by_their_names(tmp_path):
     groups = np.bincount(start.frame["group"])
     held = np.bincount(layout.materials(0, layout.planes).ravel(), minlength=256)[: len(layout.parts)]
     assert groups.tolist() == held.tolist()
-    names = [mark.label for mark in names_of(layout, start)]
+    names = [mark.label for mark in names_of(start)]
     assert names == [f"{part.key} ({held[part.number]:,})" for part in layout.parts]
     figure = turning(layout, start, marks_of(layout))
     shown = {trace.name: trace for trace in figure.data if trace.showlegend is not False}

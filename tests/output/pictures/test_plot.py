@@ -336,6 +336,17 @@ def test_log_shows_the_change_of_energy_and_growth_in_decades(tank):
     ]
 
 
+def test_the_log_of_a_gas_shows_its_heat_and_no_chart_that_says_nothing(run_with, alone):
+    run = run_with(box(10, 5), np.zeros(50))
+    columns = "time,step,dt,kinetic_energy,potential_energy,thermal_energy,largest_speed,density_error"
+    log = CsvTable(run.folder / "log.csv", columns.split(","), alone)
+    for k in range(3):
+        log.write([0.25 * k, k, 1e-4, 0.1 * k, 0.0, 7 - 0.1 * k, 1.0, 0.0])
+    energy, *others = charts.log_charts(run, 2)
+    assert energy.curves["heat, change"] == pytest.approx(-0.1 * np.arange(3))
+    assert [chart.title for chart in others] == ["largest speed", "time step"]
+
+
 @pytest.mark.parametrize(
     ("unit", "largest", "factor", "text"),
     [
