@@ -256,6 +256,7 @@ OF_MATERIAL = (
     _fixed("is_fluid", "1", "1 in a fluid, else 0"),
     _fixed("fluid", "1", "number of the fluid from 1 on, 0 in what is none"),
     _fixed("mobile", "1", "1 where forces move the particle, else 0"),
+    _fixed("ends_fluid", "1", "1 in fluid behind an open end, else 0"),
     _fixed("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
     _fixed("rubs", "1", "1 in a viscous fluid and in a wall that it rubs on, else 0"),
     _fixed("extrapolated", "1", "1 in a wall whose pressure is that of the fluid before it, else 0"),

@@ -84,6 +84,7 @@ class OpenEnd(Answering):
     )
 
     called: ClassVar = "open end"
+    beside_sizes: ClassVar = True
 
     @property
     def axis(self) -> int:

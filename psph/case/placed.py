@@ -13,6 +13,9 @@ from psph.physics.catalogue import Catalogue
 class Answering(Table):
     """An entry of a table of a case with rules of its own."""
 
+    beside_sizes: ClassVar[bool] = False
+    """Whether it works where particles are of several levels of sizes (space.refine)."""
+
     @classmethod
     def contradictions(cls, case) -> Iterator[Finding]:
         """What contradicts itself in such tables of a case, whether it has entries or not."""

@@ -42,7 +42,7 @@ def _unfit(case) -> Iterator[tuple[Location, str]]:
         else:
             yield entry.loc, "only fluids, walls and bodies have them"
     for table, of in case.tables_of(Answering).items():
-        if not issubclass(of, Placed) and getattr(case, table):
+        if not (issubclass(of, Placed) or of.beside_sizes) and getattr(case, table):
             yield (table,), "what comes, goes or stops has one spacing"
     if len(flowing) > 1:
         yield flowing[1].loc, "one fluid has them"

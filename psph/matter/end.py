@@ -19,7 +19,7 @@ class OpenEnds(Kind):
 
     name = "ends"
     moves = True
-    reads = ("mobile", "is_fluid", "rest_density")
+    reads = ("ends_fluid", "is_fluid", "rest_density")
 
     @property
     def bears_held(self) -> bool:

@@ -12,6 +12,7 @@ from psph.scene.particles import settled_at
 from psph.scene.parts.level import LevelPart, LevelWall
 from psph.scene.shapes import bounds
 from psph.simulation.levels import CORNER, DIVIDED, LENGTH, Resizing
+from psph.simulation.materials import tell_of_groups
 from psph.simulation.stages import nothing
 from psph.work import Rank, Stage, Work
 
@@ -63,7 +64,7 @@ class Refinement(Kind):
         """By the level of each particle; only who follows looks at other levels.  Who leads and who divides
         is found with new lists: nobody strays by more than a third of the narrowest margin until then."""
         skin = max(SKINS[self.scene.dimensions], self.scene.case.neighbours.skin)
-        follows = np.array([one.is_fluid and not one.mobile for one in self.scene.species])
+        follows = np.array([one.follows for one in self.scene.species])
         finest = self.levels.support(self.levels.count - 1)
         return Sizes(
             self.scene.kernel.support, skin, LENGTH, LENGTH, growth=1.0, across=follows, strays=finest
@@ -156,15 +157,20 @@ def _turn(simulation) -> None:
 
 
 def _begin(simulation) -> None:
-    _work(simulation).sort()
+    _sort(simulation)
 
 
 def _renew(simulation) -> None:
     with simulation.ledger("skin"):
-        simulation.listed = simulation.neighbourhood.skin.reach()
+        simulation.listed = simulation.listed and simulation.neighbourhood.skin.reach()
     if not simulation.listed:
         with simulation.ledger("refine"):
-            _work(simulation).sort(simulation.population)
+            _sort(simulation, simulation.population)
+
+
+def _sort(simulation, population=None) -> None:
+    _work(simulation).sort(population)
+    tell_of_groups(simulation.store, simulation.plan.materials)
 
 
 def _impose(simulation) -> None:

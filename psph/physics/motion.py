@@ -82,6 +82,7 @@ class Led(NamedTuple):
 
     kind = BUFFER
     flows = True
+    follows = True
 
 
 class OfItsKind(NamedTuple):
@@ -107,6 +108,11 @@ def flows(motion) -> bool:
 def ends_fluid(motion) -> bool:
     """Whether what moves so stands behind the end of a fluid."""
     return getattr(motion, "ends_fluid", False)
+
+
+def follows(motion) -> bool:
+    """Whether what moves so goes with particles of another size."""
+    return getattr(motion, "follows", False)
 
 
 def goes_free(motion) -> bool:

@@ -9,6 +9,7 @@ from psph.case.courses import AcrossFace, Course
 from psph.case.ends import LEVEL
 from psph.case.keys import AXES
 from psph.scene.end_columns import column_of
+from psph.scene.end_levels import level_faults
 from psph.scene.end_rides import ride_faults
 from psph.scene.end_rows import across_up, raised, rows_behind
 from psph.scene.ends import UNLIKE, groups_of, mean_of, unlike
@@ -45,6 +46,7 @@ def end_faults(scene) -> Iterator[str]:
         if sites and isinstance(end.profile, AcrossFace):
             yield from _flat_profile(scene, name, end)
         yield from ride_faults(scene, name, end)
+        yield from level_faults(scene, name, end)
         if end.pump and not scene.has_free_surface:
             yield (
                 f"ends.{name}.pump: gives a speed and no pressure, so without a free surface nothing "

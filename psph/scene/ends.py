@@ -20,6 +20,15 @@ from psph.scene.parts.end import EndPart, rows_of
 PLACES = 1001
 """Places between the sides of a face at which a profile from a file is averaged."""
 
+FRONT = 3.0
+"""Spacings in front of a plane within which the slope of the pressure is taken."""
+
+SEEN = FRONT + 2.0
+"""Spacings in front of a plane up to which an end asks for particles."""
+
+BEYOND = 2.0
+"""Spacings behind the last layer up to which fluid behind a plane is taken for what went out."""
+
 UNLIKE = 10.0
 """Between fluids whose ρ₀c differ by more, one answer of the whole face to waves would tear the lighter."""
 

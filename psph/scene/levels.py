@@ -25,6 +25,10 @@ REACHES = 3.0
 all around, and so have these.  The third leaves those who are born time to find their order before they lead:
 with two, a wave through borders stirs eddies of twice the energy."""
 
+LASTS = 0.5
+"""Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
+more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
+
 AROUND = 3.0
 """Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
 
@@ -56,6 +60,17 @@ class Levels:
         """How far outside of its region particles of a level are, m: whole spacings of the coarser one."""
         coarser = self.spacing(level - 1)
         return math.ceil(REACHES * self.support(level) / coarser - 1e-6) * coarser
+
+    @property
+    def widest(self) -> float:
+        """How far outside of regions finer particles may be before new lists are made, m."""
+        return self.margin(1) + LASTS * self.spacing(0) + self.support(self.count - 1)
+
+    def nearest(self, points: np.ndarray) -> tuple[int, float]:
+        """The region nearest to some ``points`` (n, dim), m, as the coarsest particles around it know it, and
+        how far all of them are outside of that, m."""
+        away = [self._away(one, 1, points).min() for one in self._refined(1)]
+        return int(np.argmin(away)), float(min(away))
 
     def _around(self, level: int) -> float:
         """How much larger the region of the next coarser level is than that of a level, m: whole spacings of

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.fields import WALL
-from psph.physics.motion import flows, is_free
+from psph.physics.motion import ends_fluid, flows, follows, is_free
 from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
 
 
@@ -113,6 +113,16 @@ class Species(NamedTuple):
     def mobile(self) -> bool:
         """Whether forces move it."""
         return is_free(self.motion)
+
+    @property
+    def ends_fluid(self) -> bool:
+        """Whether it stands behind an open end."""
+        return ends_fluid(self.motion)
+
+    @property
+    def follows(self) -> bool:
+        """Whether it goes with particles of another size."""
+        return follows(self.motion)
 
 
 class Start(NamedTuple):

@@ -5,16 +5,11 @@ import numpy as np
 from psph.engine.settled import settled
 from psph.fields import FLUID
 from psph.parallel.reductions import all_rows, exact_sums, whole_sums
-from psph.scene.ends import EndFace
+from psph.scene.ends import BEYOND, EndFace
 from psph.simulation.end_levels import EndLevel, fit_rows
 from psph.simulation.end_queues import DIES, run_queues
 from psph.simulation.end_state import Books, EndState
 from psph.work import Rank
-
-BEYOND = 2
-"""Spacings behind the last layer up to which fluid behind a plane is taken for what went out."""
-
-MOBILE = "mobile"
 
 ALIKE = 1e-6
 """Spacings by which depths differ that count as one."""
@@ -122,8 +117,6 @@ class Passage:
         of_fluid, of_buffer = self.face.fluid_of, np.array(self.face.groups, np.uint8)
         store.group[low + came] = of_fluid[store.group[low + came]]
         store.group[low + went] = of_buffer[store.group[low + went]]
-        if MOBILE in store:
-            store[MOBILE][low + came], store[MOBILE][low + went] = 1.0, 0.0
 
     def _copied(self, plane: float, parents: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Groups and numbers of those that are born at a ``depth`` (n,), m, as their ``parents`` are."""

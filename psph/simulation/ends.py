@@ -8,7 +8,7 @@ from psph.engine.settled import settled
 from psph.fields import FLUID, LISTED_POSITION
 from psph.parallel.reductions import whole_sums
 from psph.scene.end_columns import side_by_side
-from psph.scene.ends import EndFace, faces_of
+from psph.scene.ends import FRONT, SEEN, EndFace, faces_of
 from psph.simulation.end_fit import FITTED, Flowing, Listed, Planes, Vicinity, room_for, see_fronts
 from psph.simulation.end_means import (
     BY_LEVEL,
@@ -22,15 +22,13 @@ from psph.simulation.end_means import (
     sum_before,
     sum_behind,
 )
-from psph.simulation.end_passage import MOBILE, Passage, within
+from psph.simulation.end_passage import Passage, within
 from psph.simulation.end_state import Books, EndState
+from psph.simulation.materials import tell_of_groups
 from psph.work import Rank, Work
 
 MOVED = 0.4
 """Spacings past the plane at which particles change sides before lists are due."""
-
-FRONT = 3.0
-"""Spacings in front of a plane within which the slope of the pressure is taken."""
 
 LISTED = LISTED_POSITION.name
 
@@ -88,7 +86,7 @@ class Buffers(Work):
         self.units = Units(self.densities[-1] * c * c, self.densities[-1] * c, c, self.dx)
         loops = see_fronts, sum_behind, sum_before, fill_behind
         self._see, self._sum_behind, self._sum_before, self._fill = map(settled, loops)
-        self._fastest = np.zeros(2)
+        self._fastest, self._whole = np.zeros(2), True
         self.settle()
 
     # Who is where.
@@ -101,7 +99,7 @@ class Buffers(Work):
         behind, front = [], []
         for face in self.faces:
             depth = face.depth(store[LISTED][face.axis][store.inner], face.ride.place(self.time))
-            near = fluid & (depth > -(FRONT + 2.0) * self.dx) & (depth < face.layers * self.dx)
+            near = fluid & (depth > -SEEN * self.dx) & (depth < face.layers * self.dx)
             behind.append(np.flatnonzero(np.isin(groups, face.groups)))
             front.append(within(face, self.domain, np.flatnonzero(near), LISTED))
         self.behind, self.front = self._standing(behind), self._standing(front)
@@ -127,9 +125,9 @@ class Buffers(Work):
 
     def _matter(self) -> np.ndarray:
         """For each column the number of its fluid, with a minus behind a plane; 0: no fluid."""
-        rest, mobile, flows = (self._column(name) for name in ("rest_density", MOBILE, "is_fluid"))
+        rest, behind, flows = (self._column(name) for name in ("rest_density", "ends_fluid", "is_fluid"))
         number = 1 + np.searchsorted(self.densities, rest)
-        return (number * (flows > 0.0) * np.where(mobile > 0.0, 1, -1)).astype(np.int64)
+        return (number * (flows > 0.0) * np.where(behind > 0.0, -1, 1)).astype(np.int64)
 
     def _column(self, name: str) -> np.ndarray:
         """Of what materials fix, an array over all columns."""
@@ -138,11 +136,12 @@ class Buffers(Work):
     def renew(self, simulation) -> None:
         """Let particles change sides, be born and die, where lists are due or some have come too far."""
         self.time = simulation.then
-        if not any(state.due for state in self.states):
+        if not (simulation.whole and any(state.due for state in self.states)):
             return
         with self.ledger("ends"):
             for passage, state in zip(self.passages, self.states):
                 passage.renew(state, self.time, simulation.population)
+            tell_of_groups(self.store, self.plan.materials)
         simulation.listed = False
 
     # What they are like.
@@ -154,13 +153,17 @@ class Buffers(Work):
             x[own] += dt * v[own]
 
     def impose(self, simulation) -> None:
-        """The state of the buffers at the new time, from the fluid in front of the planes; collective."""
+        """The state of the buffers at the new time, from the fluid in front of the planes, where that ends a
+        step of its own; collective."""
+        self._whole = simulation.whole
+        if not self._whole:
+            return
         if simulation.listed:
             with self.ledger("halo"):
                 self.domain.halo.refresh(self.plan.refreshed)
             simulation.listed = False  # ghosts are fresh, but for what follows
         with self.ledger("ends"):
-            self._impose(simulation.then, simulation.dt)
+            self._impose(simulation.then, self.plan.pace * simulation.dt)
 
     def _impose(self, time: float, dt: float) -> None:
         self.time = time
@@ -236,8 +239,10 @@ class Buffers(Work):
             for row in store.rows[name]:
                 store.data[row, own] = 0.0
 
-    def kick(self, dt: float) -> tuple[float, ...]:
-        """The largest |a|² and |v|² of the buffers."""
+    def kick(self, dt: float) -> tuple[float, ...] | None:
+        """The largest |a|² and |v|² of the buffers, where these are new."""
+        if not self._whole:
+            return None
         change2, speed2 = self._fastest.tolist()
         return 0.0, change2, 0.0 if np.isfinite(speed2) else np.inf, 0.0, speed2
 

@@ -14,7 +14,7 @@ from psph.fields import seen_at, view_of
 from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, find_beside, keep_level, rows_of_leaders
 from psph.particles.neighbours import empty
-from psph.scene.levels import Levels
+from psph.scene.levels import LASTS, Levels
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
@@ -30,10 +30,6 @@ of a coarser particle's cell it is."""
 TIE = 1e-3
 """Spacings about a border within which particles go on as they are: where a row stands on it, rounding would
 let the coarse ones change sides without their corners."""
-
-LASTS = 0.5
-"""Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
-more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
 
 OF_FORCES = ("acceleration", "density_rate", "density_rate_1", "density_rate_2")
 """What forces give, and those who follow do not have: no pass has sums of it for them."""
@@ -68,8 +64,9 @@ class Resizing(Work):
         self.level_of = np.array([one.level for one in species])
         self.mass_of = np.array([one.mass for one in species])
         self.fluid_of = np.array([one.is_fluid for one in species])
-        self.follows = np.array([one.is_fluid and not one.mobile for one in species])
-        fluids = [(one.fluid, one.level, one.mobile) for one in species]
+        self.follows = np.array([one.follows for one in species])
+        # Fluid behind an open end neither turns nor divides.
+        fluids = [(not one.ends_fluid and one.fluid, one.level, one.mobile) for one in species]
         self._turned = np.array(
             [
                 fluids.index((fluid, level, not mobile)) if fluid else n

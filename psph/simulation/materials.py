@@ -125,6 +125,14 @@ def material_value(material, name: str) -> float:
     return float(getattr(material, "density" if name == "rest_density" else name))
 
 
+def tell_of_groups(store, materials: Materials) -> None:
+    """Of particles that have changed groups what these differ in: whether forces move them, and whether they
+    stand behind an open end."""
+    for name in ("mobile", "ends_fluid"):
+        if name in store:
+            store[name][store.inner] = materials.values(name)[store.shown("group")]
+
+
 def split(species, names) -> tuple[dict[str, float], tuple[str, ...]]:
     """Quantities fixed by the material that formulas read, of some ``species``: shared values, and names of
     those that vary."""

@@ -49,12 +49,12 @@ class TimeLost(BlowUp):
 class Simulation:
     """Particles, domain and clock; ``step`` advances them.
 
-    ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
-    scene.  ``time`` in s, ``dt`` the last step.  Over all ranks ``speed`` is the largest in m/s of all
-    that moves, ``fluid_speed`` that of the fluid, and ``strain`` its largest |ρ/ρ₀ − 1| after the last
-    step, infinite where a number is not finite.  ``request`` is asked at the end of each step for a number
-    from 0 on that a rank wants all others to know; ``requested`` is the largest of them, the same on every
-    rank.
+    ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the scene.
+    ``time`` in s, ``dt`` the last step, ``whole`` where it ends one of the coarsest level of sizes. Over
+    all ranks ``speed`` is the largest in m/s of all that moves, ``fluid_speed`` that of the fluid, and
+    ``strain`` its largest |ρ/ρ₀ − 1| after the last step, infinite where a number is not finite.
+    ``request`` is asked at the end of each step for a number from 0 on that a rank wants all others to
+    know; ``requested`` is the largest of them, the same on every rank.
     With ``saved`` it goes on from a checkpoint (psph.runs.resume), whose particles ``store``
     holds where the lists were made.
     """
@@ -70,7 +70,7 @@ class Simulation:
         self.impacts = Impacts(plan.extremes.sound_speed**2 / plan.smoothing_length)
         self.stages = tuple(stages_of(plan))
         self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
-        self.listed = False
+        self.listed, self.whole = False, True
         self.speed, self.fluid_speed, self.previous_speed, self.strain = 0.0, 0.0, 0.0, 0.0
         self.acceleration = self.shift = self.jolt = 0.0
         self.energy_at_start: float | None = None
@@ -93,7 +93,7 @@ class Simulation:
     def _advance(self, dt: float, left: int, end: float) -> None:
         """A step of ``dt`` s, before so many that are ``left`` to an ``end``."""
         self._refuse_lost(dt)
-        self.dt, self.then = dt, self.time + dt if left else end
+        self.dt, self.then, self.whole = dt, self.time + dt if left else end, not left
         with self.ledger("skin"):
             self.jolt = self.engine.poses.advance(self.then, self.dt)
             self.listed = self.hold(self.dt)

@@ -39,6 +39,7 @@ def view(n=2, dim=2, seed=3):
         heavy_side=np.resize((1.0, -0.5, 0.3), n),
         surface_vector=tuple(rng.normal(size=n) for _ in range(dim)),
         mobile=np.resize((0.0, 1.0, 1.0), n),
+        ends_fluid=np.resize((1.0, 0.0, 0.0), n),
         no_slip=np.resize((0.0, 1.0), n),
         rubs=np.resize((1.0, 0.0, 1.0), n),
         extrapolated=np.resize((0.0, 1.0, 1.0), n),

@@ -20,15 +20,15 @@ class NoBuffers(NamedTuple):
 
 
 class BesideBuffers(NamedTuple):
-    """Fluid that forces move: behind an end there is nothing, as behind a wall."""
+    """Fluid in front of ends: behind one there is nothing, as behind a wall."""
 
     def stands_behind(self, i):
         """1 in the buffer of an end, else 0."""
-        return i.is_fluid * (1.0 - i.mobile)
+        return i.ends_fluid
 
     def in_front(self, i):
         """1 in a fluid in front of an end, else 0."""
-        return i.is_fluid * i.mobile
+        return i.is_fluid * (1.0 - i.ends_fluid)
 
 
 Buffers = NoBuffers | BesideBuffers

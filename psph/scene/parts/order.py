@@ -154,14 +154,6 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         solid = WALL if referred else number
         add(BodyPart, name, f"bodies.{name}", body, None, source=continued(body), solid=solid)
         walls.append(found[-1])
-    placed = tuple(found)
-    for name, end in case.ends.items():
-        shape = behind(case, end, placed)
-        for number, (poured, fluid) in enumerate(case.fluids.items()):
-            filled = None if end.filled is None else end.filled == poured
-            table = Behind(end, fluid, shape, filled)
-            more = {"source": number, "solid": 0, "tensions": tensions[poured]}
-            add(EndPart, f"{name} ({poured})", f"ends.{name}", table, Buffered(), **more)
     for level in range(1 + finest if finest else 0):
         for part in walls if level else ():
             more = {"source": part.source, "level": level, "origin": part.number}
@@ -171,6 +163,14 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         for part in fluids:
             more = _of_level(part, level) | {"follows": True}
             add(LevelPart, f"{part.name} (level {level}, follows)", part.key, part.table, Led(), **more)
+    placed = tuple(found)
+    for name, end in case.ends.items():
+        shape = behind(case, end, placed)
+        for number, (poured, fluid) in enumerate(case.fluids.items()):
+            filled = None if end.filled is None else end.filled == poured
+            table = Behind(end, fluid, shape, filled)
+            more = {"source": number, "solid": 0, "tensions": tensions[poured]}
+            add(EndPart, f"{name} ({poured})", f"ends.{name}", table, Buffered(), **more)
     return Parts(found)
 
 
