@@ -31,6 +31,9 @@ COMMA_IN_LIST = re.compile(r"(?<![\w.])([-+]?\d+),(0\d+)(?![\w.])")
 
 PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
+TABLE_ABOVE = re.compile(r"annot (?:declare|mutate immutable namespace) \((.*)\)(?: twice)?")
+"""What tomllib says of keys for a table that it has already, in a tuple as Python shows it."""
+
 MOST_BYTES = 1 << 20
 """Of a case file: a few thousand are usual."""
 
@@ -214,13 +217,26 @@ def _syntax(file: str, text: str, says: str) -> str:
     column = f" (column {place[2]})" if place and place[2] else ""
     what = PLACE.sub("", says)
     written = lines[min(number, len(lines)) - 1].strip()
-    how = (
-        _with_a_point(written) or 'correct this line, for example: key = 1.0, key = "text", key = [0.0, 1.0]'
-    )
+    example = 'correct this line, for example: key = 1.0, key = "text", key = [0.0, 1.0]'
+    how = _with_a_point(written) or _of_a_table(what, lines[: number - 1]) or example
     return (
         f"{file}: line {number}: '{shortened(written, LONGEST_QUOTE)}': "
         f"{what[:1].lower()}{what[1:]}{column}; {how}"
     )
+
+
+def _of_a_table(what: str, above: list[str]) -> str:
+    """How to add keys to a table that the lines ``above`` hold; empty for what says something else."""
+    if not (found := TABLE_ABOVE.search(what)):
+        return ""
+    parts = re.findall("'([^']*)'", found[1])
+    for n, part in enumerate(parts, 1):
+        if any(re.search(rf"\b{re.escape(part)}\s*=\s*{{", one) for one in above):
+            table = ".".join(parts[:n])
+            return (
+                f"braces close a table: write [{table}] with a line for each of its keys, or this key in them"
+            )
+    return f"{'.'.join(parts)} has keys above: add these there, written as those are"
 
 
 def _override(where: str, data: dict[str, Any], text: str) -> Override:

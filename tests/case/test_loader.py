@@ -82,6 +82,21 @@ def test_a_syntax_error_is_one_line_with_its_place(tmp_path, text, says):
 
 
 @pytest.mark.parametrize(
+    ("text", "how"),
+    [
+        ("space = { spacing = 0.1 }\n[[space.refine]]\n", "write [space] with a line for each of its keys"),
+        ("space = { spacing = 0.1 }\nspace.kernel = 1\n", "write [space] with a line for each of its keys"),
+        ("a.b = { c = 1 }\n[a.b.d]\ne = 1\n", "write [a.b] with a line for each of its keys"),
+        ("time.end = 1.0\n[time]\ncfl = 0.1\n", "time has keys above: add these there"),
+        ("[a.b]\nc = 1\n[d]\n[a.b]\ne = 1\n", "a.b has keys above: add these there"),
+    ],
+)
+def test_keys_for_a_table_that_stands_above_are_told_where_to_go(tmp_path, text, how):
+    [line] = refusal(tmp_path, text)
+    assert how in line and "for example" not in line
+
+
+@pytest.mark.parametrize(
     ("override", "found"),
     [
         ("time.end=0.5", lambda case: case.time.end == 0.5),
