@@ -151,7 +151,10 @@ def _of_csv(path: Path) -> dict[str, np.ndarray]:
         "mass": ["mass"],
         **{name: [name] for name in MAY_LACK if name in names},
     }
-    rows = numbers_of(path, names, cells, [name for of in columns.values() for name in of])
+    wanted = [name for of in columns.values() for name in of]
+    if missing := [name for name in wanted if name not in names]:
+        raise Unfit(f"{path} has no column {named(missing)}, only {named(names)}; add it, 0 where at rest")
+    rows = numbers_of(path, names, cells, wanted)
     found, first = {}, 0
     for name, of in columns.items():
         values = rows[:, first : first + len(of)]

@@ -244,6 +244,12 @@ def test_formulas_below_zero_at_particles_are_told(tmp_path):
 ALONE = CLOUD.replace(ROUND, "\n[space]\ndimensions = 2\nspacing = 0.04\n")
 
 
+def test_columns_that_are_missing_are_told_together(tmp_path):
+    (tmp_path / "cloud.csv").write_text("x,y,mass,thermal_energy\n0,0,1,1\n0,1,1,1\n")
+    [line] = refusal(tmp_path, CLOUD, 'ideal_gases.cloud.file="cloud.csv"')
+    assert "has no column vx, vy, only x, y, mass, thermal_energy; add it" in line, line
+
+
 def test_one_far_particle_leaves_one_rank_and_check_says_so(tmp_path):
     write(tmp_path / "cloud.npz", particles())
     near = Scene(draft(tmp_path, ALONE))

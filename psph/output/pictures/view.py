@@ -93,7 +93,8 @@ def room_of(case: dict, boxes: Sequence[np.ndarray], most: Sequence[np.ndarray])
     # Along a periodic axis gravity drives a channel: there is no height.
     pull = [0.0 if "xyz"[d] in case["space"].get("periodic", ()) else g for d, g in enumerate(gravity)]
     up = int(np.argmax(np.abs(pull))) if any(pull) else dimensions - 1
-    level = sorted(set(range(dimensions)) - {up}, key=lambda axis: (-size[axis], axis))
+    part = np.round(size / size.max(), 1)  # sides that are almost alike are in their order
+    level = sorted(set(range(dimensions)) - {up}, key=lambda axis: (-part[axis], axis))
     return Room(spacing, lower, upper, up, -1 if pull[up] > 0 else 1, tuple(level))
 
 

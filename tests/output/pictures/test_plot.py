@@ -15,6 +15,7 @@ from psph.output.pictures.plot import overview, plot
 from psph.output.pictures.quantities import quantity, usual
 from psph.output.pictures.scale import scale_of
 from psph.output.pictures.show import Show
+from psph.output.pictures.view import room_of
 from psph.output.reader import Run
 from psph.output.tables import CsvTable
 from psph.physics.solid.deformation import VON_MISES
@@ -296,6 +297,12 @@ def test_slice_is_the_layer_at_its_place_seen_against_gravity(run_with):
     assert (show.panel.across, show.panel.up) == (0, 1)
     names = [path.name for path in plot(run.folder, [0.0], cut=Slice(1, 0.15))]
     assert names == ["pressure_slice_00000.png", "overview.png"]
+
+
+@pytest.mark.parametrize(("sides", "level"), [((1.0, 1.04, 1.0), (0, 1)), ((1.0, 1.5, 1.0), (1, 0))])
+def test_the_longest_side_goes_across_and_of_like_ones_the_first(sides, level):
+    box = np.array([np.zeros(3), sides])
+    assert room_of({"space": {"dimensions": 3, "spacing": 0.1}}, [box], [box]).level == level
 
 
 def test_what_cannot_be_drawn_is_one_line(tank, tmp_path, alone):
