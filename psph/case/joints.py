@@ -94,6 +94,7 @@ class JointTable(Answering):
     rod: Rod | None = key("two points keep their distance", None, otherwise=ANOTHER)
 
     acts: ClassVar = (BODIES,)
+    beside_sizes: ClassVar = True
 
     @property
     def kind(self) -> str:
