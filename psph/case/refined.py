@@ -46,9 +46,6 @@ def _unfit(case) -> Iterator[tuple[Location, str]]:
             yield (table,), "what comes, goes or stops has one spacing"
     if len(flowing) > 1:
         yield flowing[1].loc, "one fluid has them"
-    for name, gauge in case.gauges.items():
-        if gauge.sensor:
-            yield ("gauges", name), "the pressure on walls of several sizes is not told"
     if case.frame.motion is not None:
         yield ("frame", "motion"), "frames with levels of sizes rest"
     if case.precision != "double":

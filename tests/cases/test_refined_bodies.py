@@ -114,14 +114,18 @@ def test_water_lifts_a_block_by_its_weight_across_a_border(lower, tmp_path):
     assert abs(force_x) < 0.02 and abs(moment) < 0.02
 
 
-def test_a_load_that_counts_who_follows_lifts_twice(tmp_path, monkeypatch):
-    """The control: levels that are there twice would push twice."""
-    made = levels.rows_of_leaders
+def with_everyone(made):
+    """Rows of all fluid where those that lead are asked for."""
 
     def everyone(lists, low, owned, of, asked, same, lanes):
         return made(lists, low, owned, of._replace(leads=of.leads | same), asked, same, lanes)
 
-    monkeypatch.setattr(levels, "rows_of_leaders", everyone)
+    return everyone
+
+
+def test_a_load_that_counts_who_follows_lifts_twice(tmp_path, monkeypatch):
+    """The control: levels that are there twice would push twice."""
+    monkeypatch.setattr(levels, "rows_of_leaders", with_everyone(levels.rows_of_leaders))
     assert lift(tmp_path, 0.8)[1] > 1.3
 
 
@@ -181,7 +185,6 @@ def test_who_moves_is_there_on_every_level_that_it_may_touch(tmp_path):
 @pytest.mark.parametrize(
     "key, says",
     [
-        ('gauges.push.sensor={position=[0.65,0.2],axis="x",diameter=0.05}', "several sizes is not told"),
         ('walls.block.condition="repulsive"', "it counts on one spacing"),
     ],
 )
@@ -189,3 +192,55 @@ def test_what_does_not_work_with_levels_is_refused(key, says, tmp_path):
     text = BOX.replace("LOWER", "0.8")
     [line] = refusal(tmp_path, text[: text.index("[gauges")], key)
     assert says in line
+
+
+SENSED = """
+time.end = 0.05
+[space]
+dimensions = 2
+spacing = 0.04
+refine = [{ shape.box = { lower = [-0.2, -0.2], upper = [REACHED] } }]
+[physics]
+gravity = [0.0, -9.81]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.6, 0.8] }
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.2, -0.2], upper = [1.8, 1.0] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.6, 1.0] } }]
+[gauges.side.sensor]
+position = [0.0, 0.3]
+axis = "x"
+diameter = 0.12
+[gauges.floor.sensor]
+position = [0.8, 0.0]
+axis = "y"
+diameter = 0.12
+"""
+"""Still water on sensors in a side and the floor."""
+
+
+def sensed(folder, reached):
+    """What the sensors read, over ρg times their depths, with a finer part that has ``reached`` so far."""
+    simulation = start(draft(folder, SENSED.replace("REACHED", reached)))
+    while simulation.time < 0.05:
+        simulation.step(0.05)
+    side, floor = (one.row(simulation)[0] for one in gauges_of(Scene(simulation_case(folder))).values())
+    return side / (9810.0 * 0.5), floor / (9810.0 * 0.8)
+
+
+@pytest.mark.parametrize(
+    "reached, side, floor",
+    [("1.8, 1.0", 0.015, 0.015), ("0.6, 0.3", 0.025, 0.015), ("0.78, 1.0", 0.015, 0.045)],
+)
+def test_sensors_read_still_water_in_finer_and_coarse_water_and_across_borders(
+    reached, side, floor, tmp_path
+):
+    on_side, on_floor = sensed(tmp_path, reached)
+    assert abs(on_side - 1.0) < side and abs(on_floor - 1.0) < floor
+
+
+def test_a_sensor_that_counts_who_follows_reads_too_much(tmp_path, monkeypatch):
+    """The control."""
+    monkeypatch.setattr(levels, "rows_of_leaders", with_everyone(levels.rows_of_leaders))
+    assert min(sensed(tmp_path, "1.8, 1.0")) > 1.5

@@ -58,7 +58,7 @@ def test_still_water_presses_as_it_is_deep_in_corners_and_on_both_sides_of_a_pla
 def test_parts_of_a_sensor_are_not_what_they_seem(tmp_path):
     """The controls: in a corner the floor bears a part of the pressure, and rows of a plate the water behind it."""
     _, scene = started(draft(tmp_path, STILL + asked(PLACES)))
-    faces = {name: gauges_of(scene)[f"gauge-{name}.csv"].face for name in PLACES}
+    faces = {name: gauges_of(scene)[f"gauge-{name}.csv"].faces[0] for name in PLACES}
     assert faces["corner"].area < 0.8 * DX and faces["middle"].area == pytest.approx(DX, rel=0.01)
     assert faces["middle"].shares.min() == 0.0 > faces["plate"].shares.min()
 

@@ -87,8 +87,9 @@ def gauge_of(scene, name: str, table):
             probe = FieldProbe(name, asked.position, asked.fields)
         case _:
             axis, beside = AXES.index(asked.axis), _beside(scene, asked)
-            if face := face_of(scene, beside, asked, axis):
-                return SensorGauge(name, every, beside.groups, face, _carrier(asked, names))
+            faces = (face_of(one, beside, asked, axis) for one in (scene, *scene.finer))
+            if told := tuple(filter(None, faces)):
+                return SensorGauge(name, every, told, _carrier(asked, names))
             points = disc(asked.position, axis, asked.diameter, scene.spacing)
             probe = FieldProbe(name, points, ("pressure",))
     carrier = _carrier(asked, names)

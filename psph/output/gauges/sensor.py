@@ -21,13 +21,15 @@ less is the rounding of what presses a wall that it lies across from both sides.
 
 
 class SensorFace(NamedTuple):
-    """The particles of a wall behind a sensor, by the sites where they start, and their shares in it.
+    """The particles of walls of one spacing behind a sensor, by the sites where they start, and their shares
+    in it.
 
-    ``shares`` is an array over a box of sites, the lowest of which is at ``lowest``, m (dim,), each
-    ``spacing`` m from the next; ``inwards`` (dim,) the unit vector into the wall; ``area``, m^(dim−1), is
-    what an even pressure of 1 Pa comes to.
+    They are those of some ``groups``; ``shares`` is an array over a box of sites, the lowest of which is at
+    ``lowest``, m (dim,), each ``spacing`` m from the next; ``inwards`` (dim,) the unit vector into the
+    wall; ``area``, m^(dim−1), is what an even pressure of 1 Pa comes to.
     """
 
+    groups: tuple[int, ...]
     shares: np.ndarray
     lowest: np.ndarray
     spacing: float
@@ -52,19 +54,19 @@ class SensorFace(NamedTuple):
 class SensorGauge(NamedTuple):
     """Pressure on a round sensor in the face of a wall: the push of the fluid across it over its area, Pa.
 
-    p = Σ_w s_w m_w a_w·n / Σ_w s_w A_w over the particles w of the walls ``groups`` in the rows behind the
-    sensor, a_w by their neighbours in the fluid alone (psph.composition.loads), n into the wall.  Of 1 Pa
-    one bears A_w = 2 dx^2d Σ −∂W/∂n over the sites before the wall that no wall holds, so an even pressure is
-    read as it is, on edges and in corners too, and a film or a drop by the force that it has.  The shares
-    s_w = c_w (1 − κz) fall with the depth z of a row, so that what presses the back of a thin wall counts for
+    p = Σ_w s_w m_w a_w·n / Σ_w s_w A_w over the particles w of walls in the rows behind the sensor, a_w by
+    their neighbours in the fluid alone (psph.composition.loads), n into the wall.  Of 1 Pa one bears A_w =
+    2 dx^2d Σ −∂W/∂n over the sites before the wall that no wall holds, so an even pressure is read as it
+    is, on edges and in corners too, and a film or a drop by the force that it has.  The shares s_w = c_w
+    (1 − κz) fall with the depth z of a row, so that what presses the back of a thin wall counts for
     nothing: Σ_w s_w B_w = 0, with B_w as A_w of the sites behind it.  c_w is the part of the sensor at the
-    row of w, shared linearly between the two rows beside each point.
+    row of w, shared linearly between the two rows beside each point.  Among levels of sizes p is the sum
+    of those of the ``faces`` of all levels, on each of which only the fluid pushes that leads there.
     """
 
     name: str
     every: float
-    groups: tuple[int, ...]
-    face: SensorFace
+    faces: tuple[SensorFace, ...]
     carrier: Carrier | None = None
 
     def columns(self, scene) -> list[str]:
@@ -73,27 +75,32 @@ class SensorGauge(NamedTuple):
 
     def row(self, simulation) -> np.ndarray:
         """The value, the same on every rank."""
+        return np.sum([self._of_face(simulation, face) for face in self.faces], axis=0)
+
+    def _of_face(self, simulation, face: SensorFace) -> np.ndarray:
+        """What presses on the walls of one spacing, Pa."""
         store, poses = simulation.store, simulation.engine.poses
-        own = np.flatnonzero(np.isin(store.shown("group"), self.groups))
-        places, inwards = store.shown("position")[own], self.face.inwards
+        own = np.flatnonzero(np.isin(store.shown("group"), face.groups))
+        places, inwards = store.shown("position")[own], face.inwards
         periods = simulation.domain.periods
         if self.carrier is not None:
             row = simulation.plan.materials.pose_of[self.carrier.group]
             places = self.carrier.taken_back(simulation, places)
             inwards = poses.maps[row, PLACE][:, 1:] @ inwards
-        shares = self.face.shares_of(places, periods)
+        shares = face.shares_of(places, periods)
         behind = np.flatnonzero(shares)
         push = store.shown("mass")[own[behind], None] * store.shown("load")[own[behind]]
         across = sum(push[:, d] * inwards[d] for d in range(store.dimensions))
-        return exact_sums(simulation.comm, (shares[behind] * across)[:, None]) / self.face.area
+        return exact_sums(simulation.comm, (shares[behind] * across)[:, None]) / face.area
 
 
 def face_of(scene, beside, asked, axis: int) -> SensorFace | None:
     """The face, across an ``axis``, of the walls ``beside`` (psph.scene.outside.WallRegion) in which a sensor
-    is ``asked`` for; None where no particles behind it bear a pressure."""
+    is ``asked`` for, of the level of sizes of the ``scene``; None where no particles behind it bear a
+    pressure."""
     layout, dx = scene.layout, scene.spacing
     points = (disc(asked.position, axis, asked.diameter, FINE * dx) - layout.lattice.origin) / dx - 0.5
-    reach = math.ceil(layout.support / dx)
+    reach = math.ceil(scene.support / dx)
     sites = _sites(scene, beside, np.floor(points.min(axis=0)), np.ceil(points.max(axis=0)), reach)
     # Arrays from here on have the axis last, and go into the wall along it.
     turned = np.moveaxis(np.array([sites.walls, sites.bearing]), 1 + axis, -1)
@@ -104,14 +111,18 @@ def face_of(scene, beside, asked, axis: int) -> SensorFace | None:
     ahead, behind = ((across * turned[1][..., place]).sum() for place in (middle, middle - 1))
     inwards = 1 if ahead >= behind else -1
     walls, bearing = turned[..., ::inwards]
-    shares, area = _shares(walls, bearing, across, _slopes(layout.kernel, dx, reach, scene.dimensions))
+    shares, area = _shares(walls, bearing, across, _slopes(scene.kernel, dx, reach, scene.dimensions))
     if not area > LEAST:
         return None
-    shares = _seen_once(layout, sites.first, np.moveaxis(shares[..., ::inwards], -1, axis))
+    shares = _seen_once(layout, dx, sites.first, np.moveaxis(shares[..., ::inwards], -1, axis))
     lowest = (sites.first + 0.5) * dx + layout.lattice.origin
-    return SensorFace(
-        shares, lowest, dx, inwards * np.eye(scene.dimensions)[axis], area * dx ** (scene.dimensions - 1)
+    into, level = inwards * np.eye(scene.dimensions)[axis], getattr(scene, "level", 0)
+    groups = tuple(
+        part.number
+        for part, one in zip(layout.parts, scene.species)
+        if part.origin in beside.groups and one.level == level
     )
+    return SensorFace(groups, shares, lowest, dx, into, area * dx ** (scene.dimensions - 1))
 
 
 class _Sites(NamedTuple):
@@ -147,19 +158,20 @@ def _window(count: int, spacing: float, period: float) -> int:
     return (count - round(period / spacing)) // 2
 
 
-def _seen_once(layout, first: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """The shares of the sites from ``first`` on, those of images added to what a period or a mirror shows."""
+def _seen_once(layout, dx: float, first: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """The shares of the sites from ``first`` on, ``dx`` m apart, those of images added to what a period or a
+    mirror shows."""
     for d, period in enumerate(layout.periods):
         if period is not None:
-            along, own = np.moveaxis(shares, d, 0), _window(shares.shape[d], layout.spacing, period)
-            sites = round(period / layout.spacing)
+            along, own = np.moveaxis(shares, d, 0), _window(shares.shape[d], dx, period)
+            sites = round(period / dx)
             for k in (*range(own), *range(own + sites, len(along))):
                 along[own + (k - own) % sites] += along[k]
                 along[k] = 0.0
     for plane in layout.mirror_planes:
         d = plane.axis
         along = np.moveaxis(shares, d, 0)
-        behind = round((plane.at - layout.lattice.origin[d]) / layout.spacing) - first[d]
+        behind = round((plane.at - layout.lattice.origin[d]) / dx) - first[d]
         images = range(min(behind, len(along))) if plane.side == BELOW else range(max(behind, 0), len(along))
         for k in images:
             if 0 <= (own := 2 * behind - 1 - k) < len(along):
