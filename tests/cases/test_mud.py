@@ -116,24 +116,30 @@ def bagnold(z, degrees, depth=0.0106, d=5.3e-4, packing=0.6):
 
 
 @LONG
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("degrees", "spacing", "most"),
-    [(24, COARSE_SLOPE, 0.09), (24, (), 0.04), (26, COARSE_SLOPE, 0.06), (26, (), 0.03)],
-)
-def test_grains_on_a_slope_have_the_profile_of_bagnold(degrees, spacing, most, tmp_path):
-    """On 24°, 1 % of stress are 9 % of speed: there 20 layers miss the 3 % that they keep on 26°.  Means from 2.5 s on:
-    by sound the error of a moment, 3.8 to 4.0 %, swings."""
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize(("degrees", "coarse", "fine"), [(24, 0.105, 0.045), (26, 0.08, 0.033)])
+def test_grains_on_a_slope_have_the_profile_of_bagnold(degrees, coarse, fine, tmp_path):
+    """With 10 layers and with 20, which halves the error at least; a start in disorder has the same.  On 24° 1 % of
+    stress are 9 % of speed.  Where damping braked grains along the floor, until 28 November, that hid a fifth of it."""
+    first, second = (
+        off_bagnold(degrees, tmp_path / name, *sets) for name, sets in (("10", COARSE_SLOPE), ("20", ()))
+    )
+    assert first < coarse and second < fine and second < 0.5 * first
+
+
+def off_bagnold(degrees, folder, *spacing):
+    """The largest error of the speed over that on top; of means from 2.5 s on, since by sound that of a moment swings."""
     angle = math.radians(degrees)
     gravity = f"physics.gravity=[{9.81 * math.sin(angle)!r},{-9.81 * math.cos(angle)!r}]"
     top = float(bagnold(0.0106, degrees))
     begin = f"fluids.grains.velocity_gradient=[[0.0,{top / 0.0106!r}],[0.0,0.0]]"
-    run = finished("mud/grains_on_slope", tmp_path, gravity, begin, *spacing)
+    run = finished("mud/grains_on_slope", folder, gravity, begin, *spacing)
     off = []
     for frame in np.flatnonzero(np.array(run.times) > 2.5):
         grains = by_id(fluid(run, frame))
         off.append(grains["velocity"][:, 0] - bagnold(grains["position"][:, 1], degrees))
-    assert len(off) > 5 and np.abs(np.mean(off, axis=0)).max() / top < most
+    assert len(off) > 5
+    return np.abs(np.mean(off, axis=0)).max() / top
 
 
 def test_grains_stand_on_a_slope_below_their_friction(tmp_path):

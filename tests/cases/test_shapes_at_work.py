@@ -110,15 +110,16 @@ def half_period(run):
     return left["time"][k] + slope[k] / (slope[k] - slope[k + 1]) * (left["time"][k + 1] - left["time"][k])
 
 
-@pytest.mark.parametrize("fine", [0.02, pytest.param(0.0133333333333333, marks=LONG)])
-def test_water_in_a_cone_swings_in_time(fine, tmp_path):
-    """Half a period of π√(h/g), from which stairs of a spacing take less on the finer lattice."""
+@pytest.mark.parametrize(("fine", "part"), [(0.02, 0.75), pytest.param(0.0133333333333333, 0.85, marks=LONG)])
+def test_water_in_a_cone_swings_in_time(fine, part, tmp_path):
+    """Half a period of π√(h/g), from which stairs of a spacing take less on the finer lattice: 20 % with 10 spacings
+    of depth, 13 % with 15, 11 % with 23, there 10 % after a start in disorder."""
     case, exact = "run/cases/conical_tank.toml", math.pi * math.sqrt(0.3 / 9.81)
     coarse, finer = (
         half_period(run(case, tmp_path / f"{dx}", f"space.spacing={dx}", "time.end=0.6")) / exact
         for dx in (1.5 * fine, fine)
     )
-    assert coarse < finer < 1.0 and 1.0 - finer < 0.75 * (1.0 - coarse)
+    assert coarse < finer < 1.0 and 1.0 - finer < part * (1.0 - coarse)
     assert load(case).fluids["water"].shape.cone
 
 
