@@ -65,7 +65,7 @@ def way(case):
     return np.array(found)
 
 
-@pytest.mark.parametrize("joint, free", [(SLIDER, 0), (HINGE, 1)])
+@pytest.mark.parametrize("joint, free", [(SLIDER, 0), (HINGE, 1)], ids=["slider", "hinge"])
 def test_a_body_on_a_joint_goes_as_with_the_finer_spacing(joint, free, tmp_path):
     """What it does there is within 1 % of its way; with the coarse spacing, the control, 4 % and more off."""
     fine = way(sprung(tmp_path, joint, spacing=0.02))
