@@ -252,9 +252,8 @@ def test_sand_that_bears_tension_hangs_together_and_stops_short(tmp_path, monkey
     found, lowest = run_out(tmp_path / "torn")
     monkeypatch.setattr(soils, "MohrCoulomb", Untorn)
     monkeypatch.setattr(soils.Soil, "tip", property(lambda soil: 1e30))
-    # A particle that is pulled gets up to a spacing behind the face of a wall; the floor of densities, too, limits
-    # what is pulled.
-    without, pulled = run_out(tmp_path / "untorn", "guards.depth=2.0", "physics.tension_floor='off'")
+    # Of what is pulled one particle gets through the wall (29 November 2026); the floor of densities, too, limits it.
+    without, pulled = run_out(tmp_path / "untorn", "guards.on_trouble='warn'", "physics.tension_floor='off'")
     tell(f"run-out of a column with and without the tension cut-off: {found:.2f}, {without:.2f}")
     assert lowest > -1.0 and pulled < -0.05 * 1800.0 * G * 0.1
     assert without < 0.9 * found and without < 0.85 * 1.2 < found
