@@ -61,6 +61,10 @@ class Work:
     def begin(self) -> None:
         """What is kept of the start, from where particles stand then; lists are there."""
 
+    def parts(self, whole: float) -> Iterator[tuple[float, bool]] | None:
+        """Steps, s, of which one of ``whole`` s is made, and whether others follow; None: of equal ones."""
+        return None
+
     def advance(self, time: float, dt: float, largest_speed: float) -> None:
         """Go with the drift from ``time`` − ``dt`` to ``time``, s; ``largest_speed`` is of fluids, m/s."""
 

@@ -90,6 +90,13 @@ class Time(Table):
     damping_every: int = key(
         "rates of friction, of the pair potential and of summed density serve for so many passes", 1, ge=1
     )
+    halvings: int = key(
+        "how often the longest step of a gas is halved where it begins: each particle takes its own step, as "
+        "long as it and its neighbours bear; 0: all take the shortest",
+        0,
+        ge=0,
+        le=10,
+    )
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 
 

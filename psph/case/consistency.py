@@ -316,6 +316,26 @@ def _stepped(case) -> Iterator[Finding]:
                 f"the time; give at least {1.1 * end / MOST_STEPS:.2g}"
             ),
         )
+    if case.time.halvings:
+        yield from _halved(case)
+
+
+def _halved(case) -> Iterator[Finding]:
+    """What does not go with steps of their own of particles."""
+    loc, halvings = ("time", "halvings"), case.time.halvings
+    if not all(entry.of.takes_own_steps for entry in case.movers):
+        yield loc, halvings, "particles of gases alone take steps of their own; remove this key"
+        return
+    if case.time.step is not None:
+        yield loc, halvings, "a fixed step is the same for all; remove this key or time.step"
+    if case.physics.self_gravity is not None:
+        yield loc, halvings, "self-gravity is summed for all at once; remove this key or physics.self_gravity"
+    viscosity = case.physics.shock_viscosity
+    if viscosity is None or viscosity.least < 1.0:
+        says = (
+            "without physics.shock_viscosity everywhere sound would grow; remove this key, or give least = 1"
+        )
+        yield loc, halvings, says
 
 
 def _effects(case) -> Iterator[Finding]:

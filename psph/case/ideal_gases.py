@@ -127,6 +127,7 @@ class IdealGas(FreeMatter):
     continues: ClassVar = ""
     word: ClassVar = IDEAL_GASES
     takes_pistons: ClassVar = True
+    takes_own_steps: ClassVar = True
     refuses: ClassVar = {
         **{
             one: f"ideal gases push no {one} and feel none; remove one of the two"
@@ -276,8 +277,23 @@ def _beside(case) -> Iterator[Finding]:
     if case.physics.sound_speed is not None:
         says = "ideal gases have a speed of sound of their own, by pressure and density; remove this key"
         yield ("physics", "sound_speed"), case.physics.sound_speed, says
+    if case.time.halvings and (moved := _moved_by_time(case)):
+        says = f"steps of their own do not know of {moved}; remove this key, or what moves or passes there"
+        yield ("time", "halvings"), case.time.halvings, says
     if getattr(case, "regions", None):
         yield ("regions",), ..., "nothing is known of regions in ideal gases; remove the one or the other"
     for name, value in case.exact:
         if value is not None and not is_compressible(name):
             yield ("exact", name), ..., "is none of ideal gases; remove this table"
+
+
+def _moved_by_time(case) -> str:
+    """What comes, goes or moves at the rim of gases, by its key; else empty."""
+    told = [
+        f"ideal_gases.{name}.{side}"
+        for name, gas in case.ideal_gases.items()
+        for side in ("inflow", "outflow")
+        if getattr(gas, side)
+    ]
+    told += [f"walls.{name}.motion" for name, wall in case.walls.items() if wall.motion is not None]
+    return next(iter(told), "")

@@ -43,6 +43,8 @@ class Placed(Answering):
     """Whether a region may let more of it in."""
     takes_pistons: ClassVar[bool] = False
     """Whether a plane mirror that moves may press it."""
+    takes_own_steps: ClassVar[bool] = False
+    """Whether each of its particles can take a step of its own (psph.simulation.each_step)."""
     always_loaded: ClassVar[bool] = False
     """Whether the push of what flows is summed on it in any case."""
     not_absorbing: ClassVar[str] = ""

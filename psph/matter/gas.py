@@ -16,6 +16,7 @@ from psph.physics.gas.state import (
     LENGTH,
     LISTED_LENGTH,
     OF_GASES,
+    OF_OWN_STEPS,
     OF_SWITCH,
     SHARE,
     SOUND,
@@ -28,7 +29,9 @@ from psph.scene.parts.gas_faces import face_faults
 from psph.scene.parts.gas_sides import side_warnings, sides_of, unheld_warnings
 from psph.scene.sites import sites_within
 from psph.scene.steps import shorter_step
-from psph.simulation.gas import PREDICTED, Gases, Pace, begin_sizes, check_lists, find_sizes
+from psph.simulation.each_step import OF_STEPS
+from psph.simulation.gas import PREDICTED, TINY, Gases, Pace, begin_sizes, check_lists, find_sizes
+from psph.simulation.gas_steps import FINER, GasSteps, Limits
 from psph.simulation.near_rows import NEARER
 from psph.simulation.stages import nothing
 from psph.smoothing import unit_kernel, weight
@@ -73,7 +76,8 @@ class IdealGases(Kind):
     @property
     def fields(self) -> tuple[Field, ...]:
         """What their work fills."""
-        return OF_GASES if self.least is None else (*OF_GASES, *OF_SWITCH)
+        own = (*OF_OWN_STEPS, *OF_STEPS) if self.scene.case.time.halvings else ()
+        return (*OF_GASES, *(() if self.least is None else OF_SWITCH), *own)
 
     @property
     def least(self) -> float | None:
@@ -180,11 +184,12 @@ class IdealGases(Kind):
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """That of the fastest signal across a smoothing length, of the largest push, and of what cools."""
         pace = plan.planned[self.name]
-        yield 2.0 * plan.cfl / pace.signal, "signal speed (CFL)"
+        times = 2.0**pace.doublings  # of a step of all, where particles take steps of their own
+        yield times * 2.0 * plan.cfl / pace.signal, "signal speed (CFL)"
         if pace.push > 0.0:
-            yield FORCE_LIMIT * pace.push**-0.5, "force"
+            yield times * FORCE_LIMIT * pace.push**-0.5, "force"
         if pace.cooling > 0.0:
-            yield COOLING_LIMIT / pace.cooling, "cooling"
+            yield times * COOLING_LIMIT / pace.cooling, "cooling"
 
     def work(self, rank: Rank) -> Iterator[Work]:
         """Sizes, pressure, and the longest step."""
@@ -194,7 +199,10 @@ class IdealGases(Kind):
         told = (part for part in self.parts if part.start.gas.pressure is not None)
         sides = sides_of(self.scene.layout, self.parts)
         pressures = {part.number: part.start.pressure for part in told}
-        yield Gases(rank, gamma, pressures, rank.plan.planned[self.name], self.least, sides)
+        pace, halvings = rank.plan.planned[self.name], self.scene.case.time.halvings
+        limits = Limits(2.0 * rank.plan.cfl, FORCE_LIMIT, COOLING_LIMIT, TINY)
+        steps = GasSteps(rank, pace, halvings, limits) if halvings else None
+        yield Gases(rank, gamma, pressures, pace, self.least, sides, steps)
 
     def forecast(self, plan) -> Iterator[tuple[str, Settings | None]]:
         """The step that sound lets each gas have at rest, and whether its lattice keeps its order."""
@@ -232,6 +240,13 @@ class IdealGases(Kind):
             "times the larger support of a pair",
         )
         yield "passes", "Before them smoothing lengths and densities by iteration, without a message"
+
+        if halvings := scene.case.time.halvings:
+            yield (
+                "steps",
+                f"  steps of own  a particle's step is the longest, or 2 to {2**halvings} times shorter, and "
+                f"at most {FINER:g} times what its neighbours bear; who sleeps longer is woken",
+            )
 
     def advice(self, guard: str, suspect) -> Iterator[str]:
         """Of heat that leaves a particle as fast as it may, and of shorter steps."""

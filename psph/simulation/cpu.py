@@ -12,20 +12,14 @@ from psph.composition.loads import Couple, Loads, Unloaded
 from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
-from psph.fields import HELD_ACCELERATION, companions, seen_at, view_of
+from psph.fields import HELD_ACCELERATION, seen_at, view_of
 from psph.output.ledger import Ledger
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.physics.motion import COUPLE, HELD_COUPLE, LOAD
 from psph.simulation.bounded import admit_kicked, admit_predicted
-from psph.simulation.integrator import (
-    kick,
-    kick_drift_predict,
-    kick_rows,
-    predict_rows,
-    settle_given_pressure,
-    state_of,
-)
+from psph.simulation.evolving import Evolving
+from psph.simulation.integrator import kick, kick_drift_predict, settle_given_pressure, state_of
 from psph.simulation.midway import drift_to_end, kick_to_middle
 from psph.simulation.neighbourhood import Neighbourhood
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
@@ -82,6 +76,7 @@ class Engine:
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._state = settled(state_of)
         self._to_middle, self._to_end = settled(kick_to_middle), settled(drift_to_end)
+        self._evolving = Evolving(plan.evolving, store, self.each)
         self._unsent: set[str] = set()
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._loads = [settled(sum_over_neighbours) for _ in plan.passes]
@@ -94,19 +89,25 @@ class Engine:
         """The work of that name, of a kind of matter (psph.kinds), or None."""
         return next((work for work in self.kinds if work.name == name), None)
 
+    def parts(self, whole: float) -> Iterator[tuple[float, bool]]:
+        """Steps, s, of which one of ``whole`` s is made, and whether others follow."""
+        told = (kind.parts(whole) for kind in self.kinds)
+        if own := next(filter(None, told), None):
+            yield from own
+            return
+        for left in reversed(range(self.plan.pace)):
+            yield whole / self.plan.pace, left > 0
+
     def predict(self, time: float, dt: float, largest_speed: float) -> None:
         """Kick, drift to ``time`` and predict; ``largest_speed`` bounds displacements, m/s."""
         self.each(self._predict, time, dt, self._rules, self.view(largest_speed), self.columns())
         for kind in self.kinds:
             kind.advance(time, dt, largest_speed)
-        if self.plan.evolving:
-            self.each(predict_rows, dt, self.store.data, self._rows_that_evolve())
+        self._evolving.predict(dt)
         if bounds := self.plan.bounds:
             value = self.store[self.store.seen_as(bounds.bounds.name)]
             self.each(admit_predicted, bounds, self._rules, self.view(largest_speed), value, self.columns())
-        for field in self.plan.evolving:
-            _, *rates = companions(field)
-            self.store.rotate(*(rate.name for rate in rates))
+        self._evolving.make_room()
         if self._rules.own is None:
             self.store.rotate("density_rate", "density_rate_1", "density_rate_2")
 
@@ -129,8 +130,7 @@ class Engine:
 
     def kick(self, time: float, dt: float, largest_speed: float) -> list[float]:
         """The second kick.  Returns the largest |v|², |a|², strain, squared shift and |v|² of walls here."""
-        if self.plan.evolving:
-            self.each(kick_rows, dt, self.store.data, self._rows_that_evolve())
+        self._evolving.kick(dt)
         lag = None if self.plan.midway else 0.5 * dt
         parts = self.each(self._kick, time, dt, lag, self._rules, self.view(largest_speed), self.columns())
         if bounds := self.plan.bounds:
@@ -389,11 +389,3 @@ class Engine:
             names = self.plan.carried
             self._viewed, self._carried = view, view_of(names)(*(getattr(view, name) for name in names))
         return seen_at(self._carried, largest_speed)
-
-    def _rows_that_evolve(self) -> np.ndarray:
-        """Rows of value, prediction and three rates of each component of what evolves (n, 5)."""
-        columns = [
-            [self.store.rows[name] for name in (f.name, *(c.name for c in companions(f)))]
-            for f in self.plan.evolving
-        ]
-        return np.array([row for rows in columns for row in zip(*rows)], np.int64)

@@ -1,7 +1,7 @@
 """Ideal gases on a rank: smoothing lengths, density and pressure before the sums over pairs, the longest step
 and the books after them."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -16,12 +16,15 @@ from psph.physics.gas.state import (
     INVERSE_LENGTH,
     LENGTH,
     LISTED_LENGTH,
+    LONGEST,
     SIGNAL,
     SOUND,
     UNEQUAL,
 )
 from psph.scene.parts.gas_sides import GasSide
+from psph.simulation.each_step import LAST
 from psph.simulation.gas_shares import find_shares, shares_of
+from psph.simulation.gas_steps import GasSteps
 from psph.simulation.gas_streams import Streams
 from psph.simulation.lengths import NONE, OUTGROWN, SWOLLEN, Lengths, Numbers, find_lengths, find_state
 from psph.simulation.near_rows import AXES, SeenRows, images_in, rooms_for, table_of
@@ -47,10 +50,11 @@ rates fall, and what goes on from those of earlier steps would be too low."""
 
 class Pace:
     """What limits the time step of gases: the largest ``signal``/h and ``cooling``, −u̇/u, in 1/s, and
-    ``push``, |a|/h in 1/s²."""
+    ``push``, |a|/h in 1/s².  A step of all is 2^``doublings`` times the shortest of particles."""
 
     def __init__(self, signal: float):
         self.signal, self.push, self.cooling = signal, 0.0, 0.0
+        self.doublings = 0
 
     @property
     def tops(self) -> list[float]:
@@ -68,7 +72,7 @@ class Gases(Work):
     ``gamma`` holds γ of each group; ``pressures`` give that of the start, Pa (n,), at places (n, dim), by the
     groups of which the case tells it.  ``pace`` is that of the plan, the same on every rank.  ``least`` is
     the share of the viscosity where nothing shocks, None where particles have no shares; through ``sides`` of
-    the domain gas comes and goes.
+    the domain gas comes and goes.  ``steps`` are those of their own that particles take, or None.
     """
 
     name = "ideal_gases"
@@ -81,10 +85,11 @@ class Gases(Work):
         pace: Pace,
         least: float | None,
         sides: Sequence[GasSide] = (),
+        steps: GasSteps | None = None,
     ):
         scene, self._plan, self._store, self._domain, _ = rank
         self._gamma, self._pressures, self._pace = gamma, pressures, pace
-        self._least = least
+        self._least, self.steps = least, steps
         self.streams, self._names = Streams(sides, self._domain), [one.name for one in scene.species]
         kernel = unit_kernel(scene.kernel, scene.dimensions)
         target = scene.case.space.smoothing**scene.dimensions
@@ -95,13 +100,26 @@ class Gases(Work):
     def begin(self) -> None:
         """Where the first layers of what comes in stand."""
         self.streams.begin()
+        if self.steps:
+            self.steps.begin()
+
+    def parts(self, whole: float) -> Iterator[tuple[float, bool]] | None:
+        """By the steps of their own of particles."""
+        return self.steps.parts(whole) if self.steps else None
+
+    def loops(self, one, loop, seen: tuple, sums) -> Iterable[tuple] | None:
+        """Over those whose steps end."""
+        return self.steps.loops(one, loop, seen, sums) if self.steps else None
 
     def passed(self) -> Iterator[str]:
-        """What has come in and gone out."""
+        """What has come in and gone out, and who had forces in a step."""
         yield from self.streams.passed(self._names)
+        yield from self.steps.passed() if self.steps else ()
 
     def settle(self) -> None:
         """New lists: room for rows of those alone that are close, which these are part of."""
+        if self.steps:
+            self.steps.relisted = True
         lists, owned, lanes = self._domain.lists, self._store.owned, self._plan.space.lanes
         padded = -(-lists.lengths[:owned].astype(np.uint64) // np.uint64(lanes)) * np.uint64(lanes)
         ends = np.cumsum(padded, dtype=np.uint64)
@@ -136,6 +154,7 @@ class Gases(Work):
             growth,
             store[LISTED_LENGTH.name],
             found,
+            store[LAST.name] if self.steps else None,
         )
         own = came[store.inner]
         lost = self._worst(own == NONE)
@@ -187,6 +206,9 @@ class Gases(Work):
         """The largest of what limits the next step, over all ranks, and the shares of viscosity in it."""
         store, inner = self._store, self._store.inner
         self.streams.hold()
+        if self.steps:
+            self.steps.after_sums()
+            return
         if self._least is not None:
             self._each(find_shares, self._least, self._asked.support, dt, shares_of(store))
         per_length = 1.0 / store[LENGTH.name][inner]
@@ -220,11 +242,11 @@ class Gases(Work):
 
     def state(self) -> dict:
         """What sets the next step, and what has come and gone."""
-        return {self.name: [self._pace.tops, self.streams.state()]}
+        return {self.name: [self._pace.tops, self._pace.doublings, self.streams.state()]}
 
     def restore(self, state: dict) -> None:
         """Go on from there."""
-        self._pace.tops, streams = state[self.name]
+        self._pace.tops, self._pace.doublings, streams = state[self.name]
         self.streams.restore(streams)
 
     def _each(self, loop, *args) -> None:
@@ -249,9 +271,13 @@ def check_lists(simulation) -> None:
 def find_sizes(simulation) -> None:
     """Smoothing lengths, densities and pressures at the new places; new lists where these reach too short."""
     gases, domain = simulation.engine.of(Gases.name), simulation.domain
-    if simulation.listed:
+    stale = ("position",) * simulation.listed + (LONGEST.name,) * (gases.steps is not None)
+    if stale:
         with simulation.ledger("halo"):
-            domain.halo.refresh(("position",))
+            domain.halo.refresh(stale)
+    if gases.steps:
+        with simulation.ledger("lengths"):
+            gases.steps.wake(simulation.dt)
     _fit(simulation, gases)
     gases.press()
 
@@ -261,6 +287,8 @@ def begin_sizes(simulation) -> None:
     gases = simulation.engine.of(Gases.name)
     gases.guess()
     simulation.neighbourhood.move_mirrors(simulation.time)
+    if gases.steps:
+        gases.steps.bring()
     _fit(simulation, gases)
     gases.heat()
     gases.press()
@@ -272,10 +300,14 @@ def _fit(simulation, gases: Gases) -> None:
         with simulation.ledger("lengths"):
             fits, nearer = gases.fit(simulation.neighbourhood.skin.growth, simulation.neighbourhood.mirrors)
         if fits:
+            if gases.steps:
+                gases.steps.settle(simulation.dt, simulation.neighbourhood.skin.growth)
             simulation.neighbourhood.meet(nearer)
             return
         simulation.rebuild()
         simulation.listed = False
+        if gases.steps:
+            gases.steps.bring()
     raise Unsized(
         f"a particle finds too few neighbours after {MOST_LISTS} lists, each longer; put "
         "more particles around it, or let an axis be periodic"

@@ -35,7 +35,8 @@ def kick_drift_predict(first, last, time, dt, rules, view, columns):
     c = columns
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
-        half, (w, w_1, w_2) = 0.5 * dt * first_kick(rules.own, group), weights_of_rates(rules.own, group)
+        half = 0.5 * dt * first_kick(rules.own, group, c.first_kick, k)
+        w, w_1, w_2 = weights_of_rates(rules.own, group)
         rate = c.density_rate[k]
         rho = c.density[k] + dt * (w * rate + w_1 * c.density_rate_1[k] + w_2 * c.density_rate_2[k])
         c.density[k] += half * rate
@@ -46,7 +47,7 @@ def kick_drift_predict(first, last, time, dt, rules, view, columns):
             put(c.velocity, k, v)
             move = add(scale(v, dt), displacement(rules.effects, i, dt))
             put(c.position, k, add(at(c.position, k), move))
-            put(c.predicted_velocity, k, add(v, scale(a, seen_ahead(rules.own, group) * dt)))
+            put(c.predicted_velocity, k, add(v, scale(a, seen_ahead(rules.own, group, c.seen_ahead, k) * dt)))
             rho = limit_density(rules.effects, i, rho)
         else:
             rho = limit_wall_density(rules.effects, i, rho)
@@ -97,7 +98,7 @@ def kick(first, last, time, dt, lag, rules, view, columns):
     wall_v2_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
-        share = last_kick(rules.own, group)
+        share = last_kick(rules.own, group, c.last_kick, k)
         rho = c.density[k] if lag is None else c.density[k] + lag * share * c.density_rate[k]
         if group < rules.free:
             a = at(c.acceleration, k)

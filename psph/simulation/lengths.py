@@ -94,12 +94,19 @@ def _masses_with(h, kernel, met, many):
     return total(rho), total(rising)
 
 
+@inside
+def sleeps(due, k):
+    """Whether particle ``k`` is not ``due``, > 0 of those who are, None where all are."""
+    return False if due is None else due[k] == 0.0
+
+
 @uncounted
-def find_lengths(first, last, asked, of, growth, listed, found, met):
+def find_lengths(first, last, asked, of, growth, listed, found, due, met):
     """Find h, ρ and q of the particles in columns ``first`` to ``last`` from their last h, and their nearer
     rows ``of`` what they see; ``met`` is room to work in.
 
-    ``listed`` (columns,) are the h of the lists, m, by ``growth`` (owned,) they may be exceeded.  Where all
+    ``listed`` (columns,) are the h of the lists, m, by ``growth`` (owned,) they may be exceeded; who is not
+    ``due`` (columns,), 0, keeps what it has and has no row.  Where all
     neighbours stand in one place with a particle, any h would do, and it stays.  Sums are over a row alone,
     in its order: the same wherever a slab begins.
     """
@@ -107,6 +114,9 @@ def find_lengths(first, last, asked, of, growth, listed, found, met):
     end = of.room[first - of.low] if first < last else np.uint64(0)
     for k in range(np.uint64(first), np.uint64(last)):
         row, begin = k - np.uint64(of.low), end
+        if sleeps(due, k):
+            of.nearer.begin[row], of.nearer.lengths[row], found.came[k] = begin, 0, FOUND
+            continue
         most, before = growth[row] * listed[k], of.table[k, AXES]
         swollen = found.length[k] > NEARER * before
         closer = ALL if swollen or meets_all(asked.images, of.table, k) else NEARER

@@ -7,7 +7,8 @@ who follow it at another pace see, with θ = τ/r,
     v̂ = v½ + (τ − r/2) Δt a,   ρ̂ = ρ + rΔt (θ ρ̇ₙ + θ² (3ρ̇ₙ/4 − ρ̇ₙ₋₁ + ρ̇ₙ₋₂/4)),
 
 which at θ = 1 is what its own forces read (psph.simulation.integrator).  Where all are of pace 1 compiled
-loops have these as plain numbers.
+loops have these as plain numbers.  Where each particle takes a step of its own (psph.simulation.each_step)
+its column says the same: ``each`` has it, else None.
 """
 
 from typing import Any, NamedTuple
@@ -32,20 +33,26 @@ class OwnSteps(NamedTuple):
 
 
 @inside
-def first_kick(own, group):
+def first_kick(own, group, each, k):
     """Half steps of Δt by which a ``group`` is kicked before it drifts."""
+    if each is not None:
+        return each[k]
     return 1.0 if own is None else own.first[group]
 
 
 @inside
-def last_kick(own, group):
+def last_kick(own, group, each, k):
     """Half steps of Δt by which it is kicked after the pass."""
+    if each is not None:
+        return each[k]
     return 1.0 if own is None else own.last[group]
 
 
 @inside
-def seen_ahead(own, group):
+def seen_ahead(own, group, each, k):
     """Steps of Δt from v½ to the velocity that is seen."""
+    if each is not None:
+        return each[k]
     return 0.5 if own is None else own.ahead[group]
 
 

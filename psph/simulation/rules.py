@@ -40,7 +40,10 @@ class Rules(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """The arrays of a rank's particles that the step advances; vectors are tuples of component arrays."""
+    """The arrays of a rank's particles that the step advances; vectors are tuples of component arrays.
+
+    The last three are of particles that take steps of their own (psph.simulation.each_step).
+    """
 
     group: Any
     anchor: Any
@@ -63,6 +66,9 @@ class Columns(NamedTuple):
     drawn_normal: Any = None
     face_side: Any = None
     drawn_side: Any = None
+    first_kick: Any = None
+    last_kick: Any = None
+    seen_ahead: Any = None
 
 
 @register_jitable

@@ -69,7 +69,7 @@ class Simulation:
         self.population = Population(scene, plan, self.domain)
         self.impacts = Impacts(plan.extremes.sound_speed**2 / plan.smoothing_length)
         self.stages = tuple(stages_of(plan))
-        self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
+        self.time, self.then, self.dt, self.steps, self.parts = 0.0, 0.0, 0.0, 0, 0
         self.listed, self.whole = False, True
         self.speed, self.fluid_speed, self.previous_speed, self.strain = 0.0, 0.0, 0.0, 0.0
         self.acceleration = self.shift = self.jolt = 0.0
@@ -84,14 +84,16 @@ class Simulation:
         self.engine.spent_on_pairs()  # the first passes may have loaded compiled loops
 
     def step(self, end: float = np.inf) -> None:
-        """Advance by one time step, or where levels of sizes have steps of their own by one of the coarsest;
-        the last one before ``end`` (s) ends exactly there."""
+        """Advance by one time step, or where particles have steps of their own by one of the longest, in so
+        many ``parts``; the last one before ``end`` (s) ends exactly there."""
         whole, self.limited_by, then = self._next_step(end)
-        for left in reversed(range(self.plan.pace)):
-            self._advance(whole / self.plan.pace, left, then)
+        self.parts = 0
+        for dt, left in self.engine.parts(whole):
+            self._advance(dt, left, then)
+            self.parts += 1
 
-    def _advance(self, dt: float, left: int, end: float) -> None:
-        """A step of ``dt`` s, before so many that are ``left`` to an ``end``."""
+    def _advance(self, dt: float, left: bool, end: float) -> None:
+        """A step of ``dt`` s, before others that are ``left`` to an ``end``, or to it."""
         self._refuse_lost(dt)
         self.dt, self.then, self.whole = dt, self.time + dt if left else end, not left
         with self.ledger("skin"):
@@ -105,7 +107,7 @@ class Simulation:
 
     def passed(self, every: int) -> bool:
         """Whether the last :meth:`step` has brought the steps to a multiple of ``every``, or past one."""
-        return self.steps % every < self.plan.pace
+        return self.steps % every < self.parts
 
     def is_due(self, one: Pass) -> bool:
         """Whether a pass runs in this step: as all do, or as a kind of matter says."""

@@ -51,7 +51,7 @@ def along(simulation, *names):
     return x[order, 0], *(field[order] for field in fields)
 
 
-@pytest.mark.parametrize("sets", [(), (SWITCHED,)])
+@pytest.mark.parametrize("sets", [(), (SWITCHED,), ("time.halvings=4",)])
 def test_a_strong_blast_runs_as_the_exact_one(tmp_path, sets):
     """1000 : 0.01 Pa, 1000 particles in 2 m."""
     blast = 'pressure = "1000 if abs(x) < 0.5 else 0.01"'

@@ -151,18 +151,18 @@ def go_on_alike(simulation, again, count, rebuilds=1):
     assert state(again) == state(simulation)
 
 
-def go_on_elsewhere(case, before, after, folder):
-    """14 steps on ``before`` ranks of two, a checkpoint, and 14 more: on ``after`` ranks the same."""
+def go_on_elsewhere(case, before, after, folder, many=14):
+    """So ``many`` steps on ``before`` ranks of two, a checkpoint, and as many more: on ``after`` ranks the same."""
     world = MPI.COMM_WORLD
     comms = {1: MPI.COMM_SELF, 2: world}
     own = folder / (f"rank{world.rank}" if before == 1 else "all")
     own.mkdir(exist_ok=True)
     world.Barrier()
-    simulation = steps(case, comms[before], 14)
+    simulation = steps(case, comms[before], many)
     keep(simulation, case, own)
     world.Barrier()
-    written = folder / ("rank0" if before == 1 else "all") / "checkpoint-14.h5"
-    go_on_alike(simulation, taken_up(case, written, comms[after]), 14, rebuilds=0)
+    written = folder / ("rank0" if before == 1 else "all") / f"checkpoint-{simulation.steps}.h5"
+    go_on_alike(simulation, taken_up(case, written, comms[after]), many, rebuilds=0)
 
 
 def same_files(folder, other):

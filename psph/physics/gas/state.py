@@ -79,3 +79,15 @@ class OfHeat(NamedTuple):
     def energy(self, density, rest_density, sound_speed):
         """None by density, J/kg: heat is booked by itself."""
         return np.zeros_like(density)
+
+
+LONGEST = Field(
+    "longest_step", "s", "longest step that a particle of a gas and its neighbours bear", start=np.inf
+)
+
+EARLIER_LENGTH = Field("earlier_length", "m", "smoothing length at the end of a particle's step before")
+
+GROWTH_RATE = Field("length_growth", "1/s", "relative rate of a smoothing length in the step before")
+
+OF_OWN_STEPS = (LONGEST, EARLIER_LENGTH, GROWTH_RATE)
+"""What their work fills where particles take steps of their own."""
