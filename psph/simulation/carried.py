@@ -28,9 +28,14 @@ def carry(rules, group, k, time, columns):
 
 
 @inside
-def prescribed_squares(rules, group, k, time, dt, columns):
-    """|v|² and |a|² of particle ``k`` by its prescribed motion, m²/s², m²/s⁴; zeros without one."""
-    return _prescribed_squares(rules.motions, rules.poses, rules, group, k, time, dt, columns)
+def prescribed_squares(rules, group, k, time, dt, v, anchor):
+    """|v|² and |a|² of particle ``k`` with the velocity ``v`` and an ``anchor`` by its prescribed motion,
+    m²/s², m²/s⁴; zeros without one.
+
+    Without branches, as :func:`book_work`: what a branch hands on may be counted, array by array, at each
+    particle, which took a hundred times as long as the rest of the loop.
+    """
+    return _prescribed_squares(rules.motions, rules.poses, rules, group, k, time, dt, v, anchor)
 
 
 @inside
@@ -40,13 +45,14 @@ def store_apparent_force(rules, group, k, time, dt, columns):
 
 
 @inside
-def book_work(rules, i, group, k, dt, columns):
-    """Book what particle ``k``, seen as ``i``, gives in a step of ``dt`` s, J.
+def book_work(rules, i, group, k, dt, work, load, v):
+    """Book as ``work`` what particle ``k``, seen as ``i``, gives by its ``load`` with its velocity ``v`` in a
+    step of ``dt`` s, J.
 
     A wall that moves pushes the fluid with −m_i a_i, a_i by the fluid around it; to what moves freely those
     body forces give that have no potential, a moving frame's among them.
     """
-    _book_work(columns.work, rules, i, group, k, dt, columns)
+    _book_work(work, rules, i, group, k, dt, load, v)
 
 
 def _carry_by_formula(motions, number, k, time, periods, columns):
@@ -133,71 +139,71 @@ def settle(columns, k, x, v, predicted, periods):
 
 
 @inside
-def prescribed_acceleration(rules, group, k, time, dt, columns):
-    """a of particle ``k`` by its prescribed motion, m/s²; zeros without one."""
+def prescribed_acceleration(rules, group, k, time, dt, v, anchor):
+    """a of particle ``k`` with a velocity ``v`` and an ``anchor`` by its prescribed motion, m/s²; zeros
+    without one."""
     number = rules.motion_of[group]
-    by_formula = _acceleration_by_formula(rules.motions, number, k, time, dt, columns)
-    return add(by_formula, _acceleration_by_pose(rules.poses, rules.pose_of, number, group, k, columns))
+    by_formula = _acceleration_by_formula(rules.motions, number, k, time, dt, v, anchor)
+    return add(by_formula, _acceleration_by_pose(rules.poses, rules.pose_of, number, group, k, v, anchor))
 
 
-def _acceleration_by_formula(motions, number, k, time, dt, columns):
+def _acceleration_by_formula(motions, number, k, time, dt, v, anchor):
     if not motions:
-        return zero_like(columns.position)
-    return _acceleration_formula(motions, number, k, time, dt, columns)
+        return zero_like(v)
+    return _acceleration_formula(motions, number, k, time, dt, v, anchor)
 
 
-def _acceleration_formula(motions, number, k, time, dt, columns):
+def _acceleration_formula(motions, number, k, time, dt, v, anchor):
     """By the change of the velocity in the step."""
-    anchor = at(columns.anchor, k)
+    place = at(anchor, k)
     if number < PRESCRIBED:
-        return zero_like(anchor)
-    v = velocity(motions, number - PRESCRIBED, anchor, time)
-    before = velocity(motions, number - PRESCRIBED, anchor, time - dt)
-    return scale(subtract(v, before), 1.0 / dt if dt > 0.0 else 0.0)
+        return zero_like(v)
+    now = velocity(motions, number - PRESCRIBED, place, time)
+    before = velocity(motions, number - PRESCRIBED, place, time - dt)
+    return scale(subtract(now, before), 1.0 / dt if dt > 0.0 else 0.0)
 
 
 @overload_inside(_acceleration_by_formula)
-def _typed_acceleration_by_formula(motions, number, k, time, dt, columns):
+def _typed_acceleration_by_formula(motions, number, k, time, dt, v, anchor):
     if len(motions):
         return _acceleration_formula
-    return lambda motions, number, k, time, dt, columns: zero_like(columns.position)
+    return lambda motions, number, k, time, dt, v, anchor: zero_like(v)
 
 
-def _acceleration_by_pose(poses, pose_of, number, group, k, columns):
+def _acceleration_by_pose(poses, pose_of, number, group, k, v, anchor):
     if poses is None:
-        return zero_like(columns.position)
-    return _acceleration_pose(poses, pose_of, number, group, k, columns)
+        return zero_like(v)
+    return _acceleration_pose(poses, pose_of, number, group, k, v, anchor)
 
 
-def _acceleration_pose(poses, pose_of, number, group, k, columns):
-    anchor = at(columns.anchor, k)
-    return affine(poses[pose_of[group]], ACCELERATION, anchor) if number == RIGID else zero_like(anchor)
+def _acceleration_pose(poses, pose_of, number, group, k, v, anchor):
+    a = affine(poses[pose_of[group]], ACCELERATION, at(anchor, k))
+    return scale(a, 1.0 if number == RIGID else 0.0)
 
 
 @overload_inside(_acceleration_by_pose)
-def _typed_acceleration_by_pose(poses, pose_of, number, group, k, columns):
+def _typed_acceleration_by_pose(poses, pose_of, number, group, k, v, anchor):
     if isinstance(poses, types.NoneType):
-        return lambda poses, pose_of, number, group, k, columns: zero_like(columns.position)
+        return lambda poses, pose_of, number, group, k, v, anchor: zero_like(v)
     return _acceleration_pose
 
 
-def _prescribed_squares(motions, poses, rules, group, k, time, dt, columns):
+def _prescribed_squares(motions, poses, rules, group, k, time, dt, v, anchor):
     if not motions and poses is None:
         return 0.0, 0.0
-    return _squares_of_motion(motions, poses, rules, group, k, time, dt, columns)
+    return _squares_of_motion(motions, poses, rules, group, k, time, dt, v, anchor)
 
 
-def _squares_of_motion(motions, poses, rules, group, k, time, dt, columns):
-    if rules.motion_of[group] <= FIXED:
-        return 0.0, 0.0
-    v, a = at(columns.velocity, k), prescribed_acceleration(rules, group, k, time, dt, columns)
-    return dot(v, v), dot(a, a)
+def _squares_of_motion(motions, poses, rules, group, k, time, dt, v, anchor):
+    a = prescribed_acceleration(rules, group, k, time, dt, v, anchor)
+    moves = rules.motion_of[group] > FIXED
+    return dot(v, v) if moves else 0.0, dot(a, a) if moves else 0.0
 
 
 @overload_inside(_prescribed_squares)
-def _typed_squares(motions, poses, rules, group, k, time, dt, columns):
+def _typed_squares(motions, poses, rules, group, k, time, dt, v, anchor):
     if not len(motions) and isinstance(poses, types.NoneType):
-        return lambda motions, poses, rules, group, k, time, dt, columns: (0.0, 0.0)
+        return lambda motions, poses, rules, group, k, time, dt, v, anchor: (0.0, 0.0)
     return _squares_of_motion
 
 
@@ -207,8 +213,8 @@ def _store_apparent_force(apparent, rules, group, k, time, dt, columns):
 
 
 def _store_force(apparent, rules, group, k, time, dt, columns):
-    a = prescribed_acceleration(rules, group, k, time, dt, columns)
     x, v = at(columns.position, k), at(columns.predicted_velocity, k)
+    a = prescribed_acceleration(rules, group, k, time, dt, v, columns.anchor)
     put(apparent, k, subtract(inertial(rules.frame, x, v), a))
 
 
@@ -233,23 +239,21 @@ def _typed_inertial(frame, x, v):
     return (lambda frame, x, v: zero_like(x)) if isinstance(frame, types.NoneType) else _inertial
 
 
-def _book_work(work, rules, i, group, k, dt, columns):
+def _book_work(work, rules, i, group, k, dt, load, v):
     if work is not None:
-        _book(work, rules, i, group, k, dt, columns)
+        _book(work, rules, i, group, k, dt, load, v)
 
 
-def _book(work, rules, i, group, k, dt, columns):
-    v = at(columns.velocity, k)
-    if group < rules.free:
-        work[k] += dt * i.mass * dot(terms.body(rules.booked, i), v)
-    elif rules.motion_of[group] > FIXED:
-        work[k] -= dt * i.mass * dot(stored(columns.load, v, k), v)
+def _book(work, rules, i, group, k, dt, load, v):
+    given, taken = dot(terms.body(rules.booked, i), v), dot(stored(load, v, k), v)
+    taken = taken if rules.motion_of[group] > FIXED else 0.0
+    work[k] += dt * i.mass * (given if group < rules.free else -taken)
 
 
 @overload_inside(_book_work)
-def _typed_book(work, rules, i, group, k, dt, columns):
+def _typed_book(work, rules, i, group, k, dt, load, v):
     if isinstance(work, types.NoneType):
-        return lambda work, rules, i, group, k, dt, columns: None
+        return lambda work, rules, i, group, k, dt, load, v: None
     return _book
 
 

@@ -117,9 +117,9 @@ def kick(first, last, time, dt, lag, rules, view, columns):
         else:
             rho = rho if lag is None else limit_wall_density(rules.effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
-            v2, a2 = prescribed_squares(rules, group, k, time, dt, c)
+            v2, a2 = prescribed_squares(rules, group, k, time, dt, at(c.velocity, k), c.anchor)
             wall_v2_max, a2_max = max(wall_v2_max, v2), max(a2_max, a2)
-        book_work(rules, i, group, k, dt, c)
+        book_work(rules, i, group, k, dt, c.work, c.load, at(c.velocity, k))
         c.density[k] = rho
     return v2_max, a2_max, strain_max, shift2_max, wall_v2_max
 
