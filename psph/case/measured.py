@@ -29,7 +29,7 @@ def gauged(case) -> Iterator[Finding]:
         if getattr(asked, "axis", None) is not None and asked.axis not in axes:
             where = f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}"
             yield ("gauges", name, gauge.kind, "axis"), asked.axis, where
-        if says := _cannot_carry(case, getattr(asked, "moves_with", None)):
+        if says := cannot_carry(case, getattr(asked, "moves_with", None)):
             yield ("gauges", name, gauge.kind, "moves_with"), asked.moves_with, says
         of, known = getattr(asked, "of", None), names_of(case.entries, *acts_on(asked))
         if isinstance(of, str) and of not in known and hasattr(asked, "measures"):
@@ -42,8 +42,9 @@ def gauged(case) -> Iterator[Finding]:
             )
 
 
-def _cannot_carry(case, name: str | None) -> str | None:
-    """Why what has a name cannot carry a gauge along, in words; None where it can, or there is no name."""
+def cannot_carry(case, name: str | None) -> str | None:
+    """Why what has a name cannot carry a gauge or a region along, in words; None where it can, or without a
+    name."""
     if name is None:
         return None
     if name not in case.boundaries:

@@ -5,7 +5,8 @@ from typing import Literal
 
 from psph.acts import FLUIDS
 from psph.case.findings import Finding, Location
-from psph.case.keys import Table, key
+from psph.case.keys import AXES, SIDES, Name, Table, key
+from psph.case.measured import cannot_carry
 from psph.case.placed import Answering, Named, Placed
 from psph.case.shapes import Shape
 from psph.physics.walls.conditions import BEARING, MIRROR
@@ -16,6 +17,21 @@ class Refined(Table):
 
     shape: Shape = key("the region")
     factor: Literal[2, 4, 8] = key("how many times finer particles are there", 2, unit="1")
+    moves_with: Name | None = key(
+        "the moving wall or the body that carries the region along, as its middle goes; it does not turn",
+        None,
+        otherwise="the region stays where it is",
+    )
+    front: Literal[SIDES] | None = key(
+        "the region goes along an axis as the fluid's farthest particle on this side does",
+        None,
+        otherwise="the region stays where it is",
+    )
+
+    @property
+    def moves(self) -> bool:
+        """Whether the region goes anywhere."""
+        return bool(self.moves_with or self.front)
 
     @property
     def levels(self) -> int:
@@ -24,7 +40,15 @@ class Refined(Table):
 
 
 def refined(case) -> Iterator[Finding]:
-    """What finer particles do not work with yet."""
+    """Regions that cannot go where they are to go, and what finer particles do not work with yet."""
+    for n, one in enumerate(case.space.refine):
+        where = ("space", "refine", n)
+        if one.moves_with and one.front:
+            yield (*where, "front"), one.front, "the region goes with moves_with already; remove one of both"
+        elif says := cannot_carry(case, one.moves_with):
+            yield (*where, "moves_with"), one.moves_with, says
+        elif one.front and one.front[0] not in AXES[: case.space.dimensions]:
+            yield (*where, "front"), one.front, f"no such axis in {case.space.dimensions}D"
     if case.space.refine:
         for loc, what in _unfit(case):
             yield loc, ..., f"does not work with space.refine yet: {what}; take one of the two out"

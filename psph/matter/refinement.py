@@ -140,6 +140,12 @@ class Refinement(Kind):
         for level in range(1, levels.count):
             dx, h, wide = levels.spacing(level), levels.smoothing_length(level), levels.margin(level)
             yield "reach", f"  level {level}     dx = {dx:g} m, h = {h:g} m, margin {wide:g} m"
+        for one in self.scene.case.space.refine:
+            if one.moves:
+                going = (
+                    f"moves with {one.moves_with}" if one.moves_with else f"goes with the front {one.front}"
+                )
+                yield "reach", f"  region      {going}"
         for level, one in enumerate((plan, *plan.finer)):
             if one.pace > 1:
                 yield (
@@ -162,7 +168,8 @@ def _begin(simulation) -> None:
 
 def _renew(simulation) -> None:
     with simulation.ledger("skin"):
-        simulation.listed = simulation.listed and simulation.neighbourhood.skin.reach()
+        holds = simulation.listed and simulation.neighbourhood.skin.reach()
+        simulation.listed = holds and _work(simulation).going.hold
     if not simulation.listed:
         with simulation.ledger("refine"):
             _sort(simulation, simulation.population)

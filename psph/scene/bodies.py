@@ -13,6 +13,7 @@ from psph.physics.rigid.lines import longest_step
 from psph.physics.solid.contact import SolidContact
 from psph.scene.body_parts import bodies_of
 from psph.scene.joints import joint_step
+from psph.scene.levels import Levels
 from psph.scene.lines import lines_of
 from psph.scene.scene import Scene
 from psph.scene.volumes import Volume, volume_of
@@ -89,11 +90,13 @@ def braked(share: float, step: float) -> float:
 
 
 def lightest_share(scene: Scene) -> float:
-    """The least mass of a body that may move over that of the fluid within h of its surface, M/ρAh."""
+    """The least mass of a body that may move over that of the fluid within h of its surface, M/ρAh; of those
+    that stay in finer fluid on another level."""
     bodies, found = Bodies(bodies_of(scene.census), scene.gravity), [math.inf]
     for row, number in enumerate(scene.layout.parts.bodies):
         own = bodies.bodies[row]
-        if scene.case.flowing and (any(own.slides) or any(own.turns)):
+        stays = Levels(scene.layout).carried_by(own.name) > getattr(scene, "level", 0)
+        if scene.case.flowing and (any(own.slides) or any(own.turns)) and not stays:
             filled = volume_of(scene.layout, number)
             surface = filled.surface(scene.dimensions)
             layer = scene.species[number].density * surface * scene.smoothing_length

@@ -16,7 +16,9 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.moments import normalised
+from psph.physics.motion import is_prescribed
 from psph.scene.forms.make import form_of
+from psph.scene.level_ways import way_of
 from psph.scene.shapes import Corner, bounds
 from psph.smoothing import kernel
 
@@ -29,6 +31,9 @@ LASTS = 0.5
 """Spacings of the coarser level beyond a margin at which particles die, and the coarser one may divide once
 more: where it went that far, they went with it.  Two distances would lose or double whoever turns between."""
 
+STRAYS = 0.5
+"""Supports of the finest level by which what carries a region may have gone on before new lists are made."""
+
 AROUND = 3.0
 """Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
 
@@ -38,6 +43,11 @@ class Levels:
     """The levels of sizes of a ``layout``, 0 the coarsest."""
 
     layout: Any
+
+    @cached_property
+    def moved(self) -> np.ndarray:
+        """How far each region is from where it was drawn, m (regions, dim): who moves them writes it."""
+        return np.zeros((len(self.layout.case.space.refine), self.layout.dimensions))
 
     @cached_property
     def count(self) -> int:
@@ -64,12 +74,13 @@ class Levels:
     @property
     def widest(self) -> float:
         """How far outside of regions finer particles may be before new lists are made, m."""
-        return self.margin(1) + LASTS * self.spacing(0) + self.support(self.count - 1)
+        stray = 1.0 + STRAYS * any(one.moves for one in self.layout.case.space.refine)
+        return self.margin(1) + LASTS * self.spacing(0) + stray * self.support(self.count - 1)
 
     def nearest(self, points: np.ndarray) -> tuple[int, float]:
-        """The region nearest to some ``points`` (n, dim), m, as the coarsest particles around it know it, and
-        how far all of them are outside of that, m."""
-        away = [self._away(one, 1, points).min() for one in self._refined(1)]
+        """The region that ever comes nearest to some ``points`` (n, dim), m, as the coarsest particles around
+        it know it, and how far all of them are then outside of that, m."""
+        away = [self._away(n, 1, way.back(points)).min() for n, way in enumerate(self._ways)]
         return int(np.argmin(away)), float(min(away))
 
     def _around(self, level: int) -> float:
@@ -82,7 +93,9 @@ class Levels:
         """How far ``points`` (n, dim) are outside of the region of a level, m (n,); below 0 inside of it."""
         if not 0 < level < self.count:
             return np.full(len(points), -np.inf if level == 0 else np.inf)
-        return np.min([self._away(one, level, points) for one in self._refined(level)], axis=0)
+        refine = enumerate(self.layout.case.space.refine)
+        away = [self._away(n, level, points) for n, one in refine if one.levels >= level]
+        return np.min(away, axis=0)
 
     def active(self, level: int, points: np.ndarray) -> np.ndarray:
         """Whether particles of a level on its sites ``points`` (n, dim) m move by their own forces (n,)."""
@@ -116,25 +129,26 @@ class Levels:
         return found
 
     def _closed(self, points: np.ndarray) -> np.ndarray:
-        """Which of some points (n, dim), m, are in walls as drawn or outside the domain (n,)."""
+        """Which of some points (n, dim), m, are in walls that rest or outside the domain (n,)."""
         layout = self.layout
+        rest = [n for n in layout.parts.walls if not is_prescribed(layout.parts[n].motion)]
         x = [layout.folded(d, along) for d, along in enumerate(points.T)]
         beyond = [(a < low) | (a > up) for a, low, up in zip(x, layout.lower, layout.upper)]
-        return np.logical_or.reduce([np.isin(layout.held(x, x[0].shape), layout.parts.walls), *beyond])
+        return np.logical_or.reduce([np.isin(layout.held(x, x[0].shape), rest), *beyond])
 
     def sites(self, level: int, extra: float = 0.0, room: tuple[Corner, Corner] | None = None) -> np.ndarray:
-        """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more; in a box, the
-        ``room``, alone where that is told."""
+        """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more; where a box is
+        told as ``room``, in that alone and wherever the region may come."""
         lattice, points = self.layout.lattice, []
         coarser, corners = lattice.within_cell(2 ** (level - 1)), self.to_corners(level)
-        wide = self.margin(level) + extra
+        wide, outside = self.margin(level) + extra, self.outside if room is None else self.ever
         for first, last in lattice.chunks():
             grid, shape = lattice.grid(first, last), lattice.shape(first, last)
             middle = np.stack([np.broadcast_to(x, shape).ravel() for x in grid], axis=1)
             middle = middle if room is None else middle[self._near_box(middle, *room)]
-            middle = middle[self.outside(level, middle) < wide + self.layout.spacing]
+            middle = middle[outside(level, middle) < wide + self.layout.spacing]
             parents = (middle[:, None, :] + coarser[None, :, :]).reshape(-1, middle.shape[1])
-            parents = parents[self.outside(level, parents) < wide]
+            parents = parents[outside(level, parents) < wide]
             points.append((parents[:, None, :] + corners[None, :, :]).reshape(-1, middle.shape[1]))
         return np.concatenate(points)
 
@@ -181,11 +195,25 @@ class Levels:
                 found &= (x > low - dx) & (x < up + dx)
         return found
 
-    def _refined(self, level: int) -> list:
-        return [one for one in self.layout.case.space.refine if one.levels >= level]
+    @cached_property
+    def _ways(self) -> list:
+        return [way_of(self.layout, one) for one in self.layout.case.space.refine]
 
-    def _away(self, one, level: int, points: np.ndarray) -> np.ndarray:
+    def ever(self, level: int, points: np.ndarray) -> np.ndarray:
+        """As :meth:`outside`, of regions wherever they may come."""
+        told = enumerate(zip(self.layout.case.space.refine, self._ways))
+        away = [self._away(n, level, way.back(points)) for n, (one, way) in told if one.levels >= level]
+        return np.min(away, axis=0)
+
+    def carried_by(self, name: str) -> int:
+        """The finest level of whose regions one moves with the part of this name: it stays in there."""
+        refine = self.layout.case.space.refine
+        return max((one.levels for one in refine if one.moves_with == name), default=0)
+
+    def _away(self, number: int, level: int, points: np.ndarray) -> np.ndarray:
         """Distance outside of one region, nearest image, as large as what is finer in it needs."""
+        one = self.layout.case.space.refine[number]
+        points = points - self.moved[number]
         more = sum(self._around(finer) for finer in range(level + 1, 1 + one.levels))
         form = form_of(one.shape)
         away = (form.faces(x).away for x in self._images(points))

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise, inside
+from psph.engine.jit import elementwise
+from psph.formula import helper
 from psph.simulation.least_squares import factor, solve
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
@@ -132,13 +133,13 @@ def see_fronts(columns, ends, planes, vicinity, listed, flowing, fit, seen):
                     seen[n, FITTED + value] += fit.share[one] * fit.right[one, value]
 
 
-@inside
+@helper
 def depth(planes, end, flowing, k):
     """How far behind the plane of an end column ``k`` is, m."""
     return (planes.place[end] - flowing.position[planes.axis[end]][k]) * planes.sign[end]
 
 
-@inside
+@helper
 def _sum_front(k, end, nearer, planes, vicinity, listed, flowing, fit):
     """Fill the ``fit`` for column ``k``; the mean depth of what it sees, m."""
     axis, sign, dx = planes.axis[end], planes.sign[end], vicinity.spacing
@@ -170,7 +171,7 @@ def _sum_front(k, end, nearer, planes, vicinity, listed, flowing, fit):
     return deep / fit.square[0, 0] if deep else 0.0
 
 
-@inside
+@helper
 def _set_terms(axis, dim, x, dx, terms):
     """1, t and tt of a place ``x`` beside a particle, m, in spacings across the face."""
     terms[0], n = 1.0, 1

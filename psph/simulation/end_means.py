@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise, inside
+from psph.engine.jit import elementwise
+from psph.formula import helper
 from psph.physics.open_ends import column_pressure, column_weight
 from psph.simulation.end_fit import DEPTH, FITTED, NEAR, SEEN, depth
 from psph.simulation.rules import density
@@ -59,7 +60,7 @@ class Told(NamedTuple):
     slope: np.ndarray
 
 
-@inside
+@helper
 def _given_at(told, end, planes, k, flowing):
     """The pressure that an end gives column ``k``, Pa: p_t in the middle of its height, or that of a still
     column under a surface; below that of the fluids that stood behind it."""
@@ -74,7 +75,7 @@ def _given_at(told, end, planes, k, flowing):
     return told.value[end] + column_weight(middle, height, pull, edges, rest)
 
 
-@inside
+@helper
 def _whole(share):
     """A term in its unit as a whole number, exact to 2^-40; 0 for what is no number."""
     return np.int64(np.rint(max(-MOST, min(MOST, share)) * ONE)) if share == share else np.int64(0)
@@ -128,7 +129,7 @@ def sum_before(front, planes, told, flowing, units, far, reach, sums):
             row[11] += _whole(x * p)
 
 
-@inside
+@helper
 def _let_go(into, push, length, dt):
     """The inward speed, m/s, of what has nothing before it, after dt: p/ρ, the ``push`` in m²/s², pushes a
     column of this ``length``, m, up to √(2p/ρ)."""

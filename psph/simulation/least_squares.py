@@ -1,9 +1,9 @@
 """Least squares f₀ + f₁·t + … of a few terms, the first of them 1, as compiled loops solve them."""
 
-from psph.engine.jit import inside
+from psph.formula import helper
 
 
-@inside
+@helper
 def factor(square, flat):
     """The lower half of ``square`` (n, n) becomes its factors LDLᵀ.  Terms of which those before
     them tell all but the part ``flat`` of the first are left out."""
@@ -19,7 +19,7 @@ def factor(square, flat):
             square[i, : i + 1] = 0.0
 
 
-@inside
+@helper
 def solve(square, share, n):
     """``share`` (n,) of the least squares f₀ = share·right of the first ``n`` terms: the first row of the
     inverse of what is ``square`` in factors."""

@@ -17,9 +17,10 @@ import numpy as np
 from psph.engine.jit import elementwise
 from psph.formula import helper
 from psph.simulation.least_squares import factor, solve
+from psph.simulation.level_images import is_near
 from psph.simulation.surface_rows import RowsAtRest, borne, weighed
 from psph.smoothing import weight
-from psph.vectors import at, dot, nearest_image, put, subtract
+from psph.vectors import add, at, dot, multiply, nearest_image, put, subtract
 
 FLAT = 0.01
 """Variance of a term of the fit, in spacings, less what terms before it tell, below which it is left out."""
@@ -65,12 +66,14 @@ class Weighed(NamedTuple):
 
 class Followed(NamedTuple):
     """Whom each of some particles follows: from ``begin`` (n,) on ``many`` (n,) entries, the ``column`` of
-    each, its ``share`` c in pressure and density and its share in the ``flow``.  ``longest`` is the longest
-    row."""
+    each, the number of its ``image`` in mirrors and what the pressure of that is ``beyond`` its own, Pa, its
+    ``share`` c in pressure and density and its share in the ``flow``.  ``longest`` is the longest row."""
 
     begin: np.ndarray
     many: np.ndarray
     column: np.ndarray
+    image: np.ndarray
+    beyond: np.ndarray
     share: np.ndarray
     flow: np.ndarray
     longest: int
@@ -108,9 +111,9 @@ def room_for(dimensions, order, longest):
 
 
 @elementwise
-def follow(first, last, columns, scale, leaders, weighing, anew, followed, state, fall):
+def follow(first, last, columns, scale, leaders, images, weighing, anew, followed, state, fall):
     """Give some ``columns`` (n,) the state of those they follow, from the ``first`` to the one before the
-    ``last``; ``scale`` (n,) m is the spacing of those.
+    ``last``; ``scale`` (n,) m is the spacing of those, which have ``images`` (psph.simulation.level_images).
 
     With ``anew`` whom they follow is found first.  Whoever has too few falls, by ``fall`` (dim,) m/s.
     """
@@ -118,9 +121,9 @@ def follow(first, last, columns, scale, leaders, weighing, anew, followed, state
     for n in range(first, last):
         k = np.uint64(columns[n])
         if anew:
-            followed.many[n] = find(k, scale[n], leaders, weighing, room, followed, followed.begin[n])
+            followed.many[n] = find(k, scale[n], leaders, images, weighing, room, followed, n)
         if followed.many[n]:
-            take_after(k, followed, n, leaders.length, weighing.rows, state)
+            take_after(k, followed, n, leaders.length, images, weighing.rows, state)
         else:
             for d in range(len(fall)):
                 state.velocity[d][k] += fall[d]
@@ -128,13 +131,14 @@ def follow(first, last, columns, scale, leaders, weighing, anew, followed, state
 
 
 @helper
-def find(k, scale, leaders, weighing, room, followed, begin):
-    """The columns whom ``k`` follows and their shares, by a fit, from the entry ``begin`` on; returns how
-    many there are."""
-    dim, column, share = len(leaders.position), followed.column[begin:], followed.share[begin:]
+def find(k, scale, leaders, images, weighing, room, followed, n):
+    """The columns whom ``k`` follows and their shares, by a fit, in row ``n``; returns how many there are."""
+    dim, begin = len(leaders.position), followed.begin[n]
+    share = followed.share[begin:]
+    told = followed.column[begin:], followed.image[begin:], followed.beyond[begin:], share
     room.square[:] = 0.0
-    many = take_row(k, scale, leaders, leaders.own, weighing, room, column, share, 0)
-    many = take_row(k, scale, leaders, leaders.others, weighing, room, column, share, many)
+    many = take_row(k, scale, leaders, leaders.own, images, weighing, room, told, 0)
+    many = take_row(k, scale, leaders, leaders.others, images, weighing, room, told, many)
     total = room.square[0, 0]
     if total <= TOO_FEW:
         return 0
@@ -170,26 +174,37 @@ def set_shares(dim, total, room):
 
 
 @helper
-def take_row(k, scale, leaders, lists, weighing, room, column, share, many):
-    """Take those who lead in a row into the sums of column ``k``, behind ``many`` entries; returns how many
-    there are then."""
-    row, dim = k - np.uint64(leaders.low), len(leaders.position)
+def take_row(k, scale, leaders, lists, images, weighing, room, told, many):
+    """Take those who lead in a row into the sums of column ``k``, and into the arrays ``told``, column,
+    image, beyond and share, behind ``many`` entries; returns how many there are then."""
+    row, dim, x_k = k - np.uint64(leaders.low), len(leaders.position), at(leaders.position, k)
     entry, last = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
+    column, image, beyond, share = told
     while entry < last:
         j = np.uint64(lists.lists[entry])
         entry += np.uint64(1)
-        x_jk = nearest_image(subtract(at(leaders.position, j), at(leaders.position, k)), weighing.periods)
-        w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / leaders.length[j])
-        if w > 0.0:
-            for d in range(dim):
-                room.place[many, d] = x_jk[d] / scale
-            column[many], share[many] = j, w
-            set_terms(dim, room.place[many], room.terms)
-            for one in range(len(room.terms)):
-                part = w * room.terms[one]
-                for other in range(one + 1):
-                    room.square[one, other] += part * room.terms[other]
-            many += 1
+        for m in range(len(images.turn[0])):
+            if not is_near(images, m, x_k):
+                continue
+            x_j = at(leaders.position, j)
+            seen = add(multiply(at(images.turn, m), x_j), at(images.shift, m))
+            x_jk = nearest_image(subtract(seen, x_k), weighing.periods)
+            w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / leaders.length[j])
+            if w > 0.0:
+                for d in range(dim):
+                    room.place[many, d] = x_jk[d] / scale
+                column[many], image[many], beyond[many], share[many] = (
+                    j,
+                    m,
+                    dot(images.weight, subtract(seen, x_j)),
+                    w,
+                )
+                set_terms(dim, room.place[many], room.terms)
+                for one in range(len(room.terms)):
+                    part = w * room.terms[one]
+                    for other in range(one + 1):
+                        room.square[one, other] += part * room.terms[other]
+                many += 1
     return many
 
 
@@ -209,21 +224,25 @@ def set_terms(dim, x, terms):
 
 
 @helper
-def take_after(k, followed, n, length, rows, state):
+def take_after(k, followed, n, length, images, rows, state):
     """Column ``k`` gets the sums of the shares of row ``n`` times what each column that it follows has;
     ``length`` m is the smoothing length of columns."""
     density, seen, depth = 0.0, 0.0, 0.0
     first = followed.begin[n]
     for entry in range(first, first + followed.many[n]):
         j, c = followed.column[entry], followed.share[entry]
-        density += c / state.volume[j]
-        seen += c * state.pressure[j]
-        depth += c * weighed(rows, length[j], state.pressure[j])
+        beyond = followed.beyond[entry]
+        pressure = state.pressure[j] + beyond
+        density += c / state.volume[j] + c * beyond * rows.softness
+        seen += c * pressure
+        depth += c * weighed(rows, length[j], pressure)
     pressure = borne(rows, length[k], depth)
     density += (pressure - seen) * rows.softness
     state.density[k], state.volume[k], state.pressure[k] = density, 1.0 / density, pressure
     for d in range(len(state.velocity)):
         v = 0.0
         for entry in range(first, first + followed.many[n]):
-            v += followed.flow[entry] * state.predicted[d][followed.column[entry]]
+            j, m = followed.column[entry], followed.image[entry]
+            seen = images.turn_velocity[d][m] * state.predicted[d][j] + images.shift_velocity[d][m]
+            v += followed.flow[entry] * seen
         state.velocity[d][k] = v

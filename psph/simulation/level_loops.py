@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from psph.composition.loads import Couple, Loads, Unloaded
+from psph.composition.mirrors import with_own_rows
 from psph.engine.settled import settled
 from psph.fields import with_length
 from psph.physics.motion import COUPLE, LOAD
@@ -27,20 +28,26 @@ leads."""
 class LevelLoops:
     """The passes of a ``plan`` over the particles of a ``store`` that are of several levels.
 
-    Nobody who follows needs a force.  ``role`` (columns,) has len(PARTS) · level + part of each column;
-    ``pushing`` are rows of the leading fluid before walls and bodies whose load is asked for, each on its own
-    level: what the fluid does is told once, wherever levels are there twice.
+    Nobody who follows needs a force.  ``role`` (columns,) has len(PARTS) · level + part of each column.
     """
 
     def __init__(self, plan, store, clock: LevelClock):
         self.plan, self.store, self._clock = plan, store, clock
         self.role = np.zeros(0, np.uint8)
-        self.pushing: Any = None
+        self._pushing: Any = None
+        self._own = np.uint64(0)
         self._levels = (plan, *plan.finer)
         self._following = [settled(sum_over_neighbours) for _ in plan.passes]
         self._pushes = settled(sum_over_neighbours)
         loaded = plan.materials.loaded
         self._loaded = () if loaded is None else [loaded & ~others for others in plan.materials.others]
+
+    def push_by(self, pushing, mirrors) -> None:
+        """Walls and bodies whose load is asked for are pushed by rows of the leading fluid ``pushing``, each
+        on its own level, and by what ``mirrors`` show of it, or None: what the fluid does is told once,
+        wherever levels are there twice."""
+        seen, self._pushing = with_own_rows(mirrors, self.store.total, pushing)
+        self._own = np.uint64(0) if seen is None else seen.own
 
     def of(self, one: Pass, loop, seen: tuple, sums) -> Iterator[tuple[Any, tuple]]:
         """The compiled ``loop`` of the pass ``one`` for each level that needs it, and those of who follows
@@ -56,7 +63,7 @@ class LevelLoops:
             if own.reductions:
                 alone = Summed((), own.reductions, self._but(level, follows))
                 yield self._following[one.place], (alone, *told, Sums(None, None, sums.written))
-        if one.gives_rates and self.pushing is not None:
+        if one.gives_rates and self._pushing is not None:
             yield from self._loads(one, seen, due)
 
     def _seen(self, level: int, one: Pass, seen: tuple) -> tuple[Pass, tuple]:
@@ -80,5 +87,6 @@ class LevelLoops:
             own, (metric, view, around) = self._seen(level, one, seen)
             couples = ((Couple(own.effects),), (s[COUPLE.name],)) if COUPLE.name in s else ((), ())
             summed = Summed(own.effects, couples[0], Loads(loaded, s.group))
-            told = metric, view, around._replace(lists=self.pushing)
+            mirrors = around.mirrors and around.mirrors._replace(own=self._own)
+            told = metric, view, around._replace(lists=self._pushing, mirrors=mirrors)
             yield self._pushes, (summed, *told, Sums(s[LOAD.name], None, couples[1]))

@@ -1,5 +1,6 @@
 """Levels of sizes on a rank: who leads and who follows, with which state, who is born and who dies."""
 
+import math
 from collections.abc import Iterator
 from itertools import product
 
@@ -17,7 +18,9 @@ from psph.particles.neighbours import empty
 from psph.scene.levels import LASTS, Levels
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
+from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
+from psph.simulation.level_regions import GoingAlong
 from psph.simulation.surface_rows import rows_of
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
@@ -59,6 +62,7 @@ class Resizing(Work):
     def __init__(self, rank: Rank):
         scene, self.plan, self.store, self.domain, self.ledger = rank
         self.levels, self.comm = Levels(scene.layout), rank.domain.comm
+        self.going = GoingAlong(rank, self.levels)
         self.gravity = np.array(scene.gravity)
         species = self.plan.materials.species
         self.level_of = np.array([one.level for one in species])
@@ -86,14 +90,20 @@ class Resizing(Work):
         unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
         self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene))
         self._follow, self._go = settled(follow), settled(go_along)
-        self._lanes = rank.plan.space.lanes
+        self._lanes, self._mirrors = rank.plan.space.lanes, rank.plan.mirrors
+        if any(plane.motion for plane in rank.plan.planes):
+            self._mirrors = self._mirrors._replace(reach=math.inf)  # wherever they go
         self.columns, self._aside = np.zeros(0, np.int64), np.zeros(0)
         self.clock = LevelClock([one.pace for one in (self.plan, *self.plan.finer)], self.level_of)
         self.own_steps = self.clock.own
         self._loops = LevelLoops(self.plan, self.store, self.clock)
         self._loaded = self.plan.materials.loaded
         if self._loaded is not None:
-            self._loops.pushing = empty(0, 0)
+            self._loops.push_by(empty(0, 0), None)
+
+    def meet(self, maps: np.ndarray) -> None:
+        """Regions go with what carries them."""
+        self.going.meet(maps)
 
     # Who is there.
 
@@ -104,6 +114,7 @@ class Resizing(Work):
         places = self.domain.inside(store.owned_rows("position"))
         group = store.group[store.inner]
         fluid, level = self.fluid_of[group], self.level_of[group]
+        self.going.move(store.owned_rows("position")[fluid & ~self.follows[group]])
         away = np.full(len(group), -np.inf)
         within = np.full(len(group), np.inf)
         corner = store[CORNER][store.inner]
@@ -170,7 +181,8 @@ class Resizing(Work):
         others = rows_of_leaders(*rows, follows, False, 1)
         keep_level(store.owned, store.low, lists, level)
         if self._loaded is not None:
-            self._loops.pushing = rows_of_leaders(*rows, self._loaded[group], True, self._lanes)
+            pushing = rows_of_leaders(*rows, self._loaded[group], True, self._lanes)
+            self._loops.push_by(pushing, self._mirrors)
         alike = rows_of_leaders(*rows, follows, True, 1)
         beside, inner = np.zeros(store.owned, bool), group[store.inner]
         find_beside(store.owned, store.low, lists, leads, beside)
@@ -190,11 +202,12 @@ class Resizing(Work):
         self._scale = self.levels.layout.spacing * 0.5 ** self._followed(where, level[self.columns])
         self._aside = self._steps_aside(where, level[self.columns])
         seen = alike.lengths[own].astype(np.int64) + others.lengths[own]
+        seen *= self._images(self._mirrors).shown_to(where)
         begins, many = np.cumsum(seen) - seen, np.zeros(len(own), np.int64)
-        size = int(seen.sum())
-        entries = np.empty(size, np.uint32), np.empty(size), np.empty(size), int(seen.max(initial=0))
+        size, longest = int(seen.sum()), int(seen.max(initial=0))
+        entries = np.empty(size, np.uint32), np.zeros(size, np.uint8), *np.empty((3, size))
         self._sides = [
-            Side(some, one, Followed(begins[some], many[some], *entries), every)
+            Side(some, one, Followed(begins[some], many[some], *entries, longest), every)
             for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
         ]
 
@@ -235,24 +248,30 @@ class Resizing(Work):
             with self.ledger("halo"):
                 self.domain.halo.refresh(self.plan.refreshed)
             simulation.listed = False  # ghosts are fresh, but for what follows
+        images = self._images(simulation.engine.neighbourhood.mirrors)
         with self.ledger("refine"):
             for side in self._sides:
                 if self.clock.every(side.every)[side.level]:
                     steps = side.every * int(self.clock.pace[side.level])
-                    self._impose(side, steps * simulation.dt * self.gravity)
+                    fall = steps * simulation.dt * self.gravity
+                    self._impose(side, images, fall)
+
+    def _images(self, mirrors) -> LeaderImages:
+        """What ``mirrors`` show of the fluid."""
+        return images_in(mirrors, self.gravity, self._weighing.rows.density)
 
     def is_due(self, one) -> bool:
         """Whether any level needs a pass."""
         return bool(self.clock.due(one).any())
 
-    def _impose(self, side: Side, fall: np.ndarray) -> None:
-        """The state of some, by those whom they have followed since lists were made, or whom they find; who
-        has too few gets ``fall`` (dim,) m/s."""
+    def _impose(self, side: Side, images: LeaderImages, fall: np.ndarray) -> None:
+        """The state of some, by those whom they have followed since lists were made, or whom they find, by
+        all their ``images``; who has too few gets ``fall`` (dim,) m/s."""
         names = "velocity", "predicted_velocity", "specific_volume", "pressure", "density"
         state = OfLeaders(*(self.store[name] for name in names))
         columns, scale = self.columns[side.some], self._scale[side.some]
-        told = columns, scale, self._leaders, self._weighing, side.begin(), side.followed, state, fall
-        in_threads(self._follow, 0, len(columns), *told)
+        whom = columns, scale, self._leaders, images, self._weighing, side.begin(), side.followed
+        in_threads(self._follow, 0, len(columns), *whom, state, fall)
 
     def loops(self, one, loop, seen: tuple, sums) -> Iterator[tuple]:
         """A pass level by level."""
@@ -270,12 +289,14 @@ class Resizing(Work):
             )
 
     def state(self) -> dict:
-        """What is counted."""
-        return {self.name: whole_sums(self.comm, self.counts).tolist()}
+        """What is counted, and where regions were when lists were made."""
+        counts = whole_sums(self.comm, self.counts).tolist()
+        return {self.name: {"counts": counts, "moved": self.levels.moved.tolist()}}
 
     def restore(self, state: dict) -> None:
         """Go on from there: rank 0 has counted all."""
-        self.counts[:] = state[self.name] if self.comm.rank == 0 else 0
+        self.counts[:] = state[self.name]["counts"] if self.comm.rank == 0 else 0
+        self.levels.moved[:] = state[self.name]["moved"]
 
 
 @elementwise

@@ -15,18 +15,19 @@ from psph.physics.fluid.rows import pressures_of_rows
 
 class RowsAtRest(NamedTuple):
     """``borne`` (n,) is p over ρ g dx at the depths 0, ½, 1½ … dx, empty where no rows are known; ``weight``
-    is ρ g dx/h, Pa/m, and ``softness`` 1/c², s²/m²."""
+    is ρ g dx/h, Pa/m, ``softness`` 1/c², s²/m², and ``density`` ρ, kg/m³."""
 
     borne: np.ndarray
     weight: float
     softness: float
+    density: float
 
 
 def rows_of(scene) -> RowsAtRest:
     """Of the fluid of a ``scene`` with levels of sizes."""
     fluid = next(one for one in scene.species if one.is_fluid)
     weight = fluid.density * float(np.linalg.norm(scene.gravity)) * scene.spacing / scene.smoothing_length
-    return RowsAtRest(pressures_of_rows(scene), weight, 1.0 / fluid.sound_speed**2)
+    return RowsAtRest(pressures_of_rows(scene), weight, 1.0 / fluid.sound_speed**2, fluid.density)
 
 
 @helper

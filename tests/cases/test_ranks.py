@@ -96,6 +96,7 @@ END = {
     "coast/run_up": 0.03,
     "coast/wave_run_up": 0.03,
     "refined/block_in_waves": 0.02,
+    "refined/heaving_sphere": 0.005,
     "refined/dam_break": 0.05,
     "ends/open_poiseuille": 0.15,
     "ends/open_channel": 0.15,

@@ -55,14 +55,6 @@ HELD = re.compile(r"call [^\n]*@NRT_incref")
 
 
 EACH_STEP = "kick", "kick_drift_predict", "state_of", "sum_over_neighbours"
-    "kick",
-    "kick_drift_predict",
-    "state_of",
-    "sum_over_neighbours",
-    "follow",
-    "go_along",
-    "see_fronts",
-)
 """Loops over all particles in each step."""
 
 
