@@ -20,8 +20,8 @@ GAUGES = ("gauges.level.level={foot=[0.5,0.0],top=[0.5,0.6]}", "gauges.push.forc
 
 WITHOUT = {
     kick: (
-        ("        book_work(rules, i, group, k, dt, c)\n", ""),
-        ("prescribed_squares(rules, group, k, time, dt, c)", "0.0, 0.0"),
+        ("        book_work(rules, i, group, k, dt, c.work, c.load, at(c.velocity, k))\n", ""),
+        ("prescribed_squares(rules, group, k, time, dt, at(c.velocity, k), c.anchor)", "0.0, 0.0"),
     ),
     kick_drift_predict: (
         ("            carry(rules, group, k, time, c)\n", "            pass\n"),
