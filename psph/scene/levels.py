@@ -34,6 +34,11 @@ more: where it went that far, they went with it.  Two distances would lose or do
 STRAYS = 0.5
 """Supports of the finest level by which what carries a region may have gone on before new lists are made."""
 
+TIE = 1e-3
+"""Spacings about a border within which particles go on as they are, and half of it inside of which a row has
+to begin so as to count to the region: where one stands on the border, rounding would let the coarse ones
+change sides without their corners."""
+
 AROUND = 3.0
 """Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
 
@@ -99,8 +104,8 @@ class Levels:
 
     def active(self, level: int, points: np.ndarray) -> np.ndarray:
         """Whether particles of a level on its sites ``points`` (n, dim) m move by their own forces (n,)."""
-        middles = self.middles(level, points, self.corners(level, points))
-        return (self.outside(level, middles) < 0.0) & ~(self.outside(level + 1, points) < 0.0)
+        middles, border = self.middles(level, points, self.corners(level, points)), -0.5 * TIE * self.spacing(0)
+        return (self.outside(level, middles) < border) & ~(self.outside(level + 1, points) < border)
 
     def corners(self, level: int, points: np.ndarray) -> np.ndarray:
         """Which corner of a coarser cell each of some sites ``points`` (n, dim) m of a level is (n,)."""
@@ -140,17 +145,22 @@ class Levels:
         """The sites (n, dim), m, of a level in its region, its margin and ``extra`` m more; where a box is
         told as ``room``, in that alone and wherever the region may come."""
         lattice, points = self.layout.lattice, []
-        coarser, corners = lattice.within_cell(2 ** (level - 1)), self.to_corners(level)
         wide, outside = self.margin(level) + extra, self.outside if room is None else self.ever
         for first, last in lattice.chunks():
             grid, shape = lattice.grid(first, last), lattice.shape(first, last)
             middle = np.stack([np.broadcast_to(x, shape).ravel() for x in grid], axis=1)
             middle = middle if room is None else middle[self._near_box(middle, *room)]
             middle = middle[outside(level, middle) < wide + self.layout.spacing]
-            parents = (middle[:, None, :] + coarser[None, :, :]).reshape(-1, middle.shape[1])
-            parents = parents[outside(level, parents) < wide]
-            points.append((parents[:, None, :] + corners[None, :, :]).reshape(-1, middle.shape[1]))
+            for one in range(1, level):
+                middle = self._divided(one, middle)
+            points.append(self._divided(level, middle[outside(level, middle) < wide]))
         return np.concatenate(points)
+
+    def _divided(self, level: int, middle: np.ndarray) -> np.ndarray:
+        """The particles of a level (2^dim n, dim), m, around the ``middle`` of each coarser cell (n, dim), m:
+        one step of sizes after the other, as they are born, so that a row on the end of a margin is there
+        for finer ones as for the coarser."""
+        return (middle[:, None, :] + self.to_corners(level)).reshape(-1, middle.shape[1])
 
     def held(
         self, level: int, number: int, extra: float = 0.0, room: tuple[Corner, Corner] | None = None

@@ -15,7 +15,7 @@ from psph.fields import seen_at, view_of
 from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, find_beside, keep_level, rows_of_leaders
 from psph.particles.neighbours import empty
-from psph.scene.levels import LASTS, Levels
+from psph.scene.levels import LASTS, TIE, Levels
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
 from psph.simulation.level_images import LeaderImages, images_in
@@ -29,10 +29,6 @@ from psph.work import Rank, Work
 LENGTH, DIVIDED, CORNER = "own_length", "divided", "corner"
 """Names of the fields: the smoothing length of its level; 1 where finer ones stand in its place; which corner
 of a coarser particle's cell it is."""
-
-TIE = 1e-3
-"""Spacings about a border within which particles go on as they are: where a row stands on it, rounding would
-let the coarse ones change sides without their corners."""
 
 OF_FORCES = ("acceleration", "density_rate", "density_rate_1", "density_rate_2")
 """What forces give, and those who follow do not have: no pass has sums of it for them."""
