@@ -70,6 +70,8 @@ def _unfit(case) -> Iterator[tuple[Location, str]]:
             yield (table,), "what comes, goes or stops has one spacing"
     if len(flowing) > 1:
         yield flowing[1].loc, "one fluid has them"
+    if case.perturbations:
+        yield ("perturbations",), "they name particles of one spacing"
     if case.frame.motion is not None:
         yield ("frame", "motion"), "frames with levels of sizes rest"
     if case.precision != "double":

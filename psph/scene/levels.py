@@ -104,7 +104,8 @@ class Levels:
 
     def active(self, level: int, points: np.ndarray) -> np.ndarray:
         """Whether particles of a level on its sites ``points`` (n, dim) m move by their own forces (n,)."""
-        middles, border = self.middles(level, points, self.corners(level, points)), -0.5 * TIE * self.spacing(0)
+        middles = self.middles(level, points, self.corners(level, points))
+        border = -0.5 * TIE * self.layout.spacing
         return (self.outside(level, middles) < border) & ~(self.outside(level + 1, points) < border)
 
     def corners(self, level: int, points: np.ndarray) -> np.ndarray:

@@ -375,6 +375,7 @@ def test_regions_that_cannot_be(key, says, tmp_path):
         ('precision="mixed"', "levels of sizes are in double precision"),
         ("fluids.water.jitter=0.1", "finer particles start on a lattice"),
         ("frame.motion.translation.velocity=[0.1,0.0]", "frames with levels of sizes rest"),
+        ("perturbations=[{position=[1.0,0.2],velocity=[1.0,0.0]}]", "they name particles of one spacing"),
     ],
 )
 def test_what_does_not_work_yet_is_refused(key, says, tmp_path):
