@@ -130,7 +130,7 @@ END = {
     "gas/sod": 0.05,
     "gas/shock_tube": 0.05,
     "gas/sedov": 0.01,
-    "gas/sedov_octant": 0.001,
+    "gas/sedov_octant": 0.003,
     "gas/gresho": 0.05,
     "gas/kelvin_helmholtz": 0.03,
     "gas/colliding_discs": 0.04,
