@@ -1,5 +1,7 @@
 """Whose particles a gauge of what flows counts."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from psph.fields import FLUID, GAS
@@ -12,3 +14,13 @@ def counted(kinds: np.ndarray, of: tuple[int, ...]) -> np.ndarray:
     """Which groups count, by their ``kinds`` (groups,): those ``of`` these numbers, or ALL that flows."""
     flows = np.isin(kinds, (FLUID, GAS))
     return flows & np.isin(np.arange(len(kinds)), of) if of else flows
+
+
+def groups_named(scene, name: str) -> Iterator[int]:
+    """The groups of what has a name: of what keeps its neighbours the clamped parts among them, of a fluid, a
+    wall or a body those of other sizes."""
+    parts = scene.layout.parts
+    for part in parts:
+        whole = parts[part.whole]
+        if name in (part.name, parts[part.origin].name) or whole.keeps_neighbours and name == whole.name:
+            yield part.number

@@ -198,11 +198,14 @@ def clouds(
 ) -> tuple[Cloud, Cloud, np.ndarray]:
     """The particles of a frame that flow, of the groups that are ``counting`` (groups,), and those that do
     not flow; and the rows of the first.  Of a gas each has its own size, ``smoothing_length`` is that of the
-    kernel, m."""
+    kernel, m; of finer regions each has that of its level, and walls, which are there once for each level,
+    count once, as the coarsest."""
     mass = frame["mass"] if "mass" in frame else materials.values("mass")[frame["group"]]
     volume = mass / frame["density"]
     flows = np.isin(frame["kind"], (FLUID, BUFFER, GAS))
-    rows, still = np.flatnonzero(counting[frame["group"]] & (frame["kind"] != BUFFER) & flows), ~flows
-    wide = frame[LENGTH][rows] / smoothing_length if LENGTH in frame else 1.0
+    rows = np.flatnonzero(counting[frame["group"]] & (frame["kind"] != BUFFER) & flows)
+    level = np.array([one.level for one in materials.species])[frame["group"]]
+    still = ~flows & (level == 0)
+    wide = frame[LENGTH][rows] / smoothing_length if LENGTH in frame else 0.5 ** level[rows]
     fluid = Cloud(frame["position"][rows], volume[rows], wide)
     return fluid, Cloud(frame["position"][still], volume[still]), rows

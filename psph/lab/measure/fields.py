@@ -13,7 +13,7 @@ from psph.lab.errors import MeasureError
 from psph.output.checkpoint import COPY
 from psph.output.export.parts import in_space
 from psph.output.export.vtk import collection, image, replace
-from psph.output.flowing import ALL, counted
+from psph.output.flowing import ALL, counted, groups_named
 from psph.output.grids import GridPoints, Weighing, at_points, clouds
 from psph.output.progress import with_progress
 from psph.output.reader import Run
@@ -94,7 +94,7 @@ class Gridding:
             return ALL
         if of not in names:
             raise MeasureError(f"measure --of {of}: no fluid has this name; there are {', '.join(names)}")
-        return tuple(number for number, name in enumerate(names) if name == of)
+        return tuple(groups_named(self.scene, of))
 
     def frames(self, times: Sequence[float] | None = None) -> Iterator[Gridded]:
         """Those nearest to ``times`` s, or all."""

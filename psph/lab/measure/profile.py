@@ -11,7 +11,7 @@ from psph.case.loader import load_to_read
 from psph.fields import FLUID, GAS
 from psph.lab.errors import MeasureError
 from psph.output.checkpoint import COPY
-from psph.output.flowing import ALL, counted
+from psph.output.flowing import ALL, counted, groups_named
 from psph.output.gauges.fit import nearest
 from psph.output.pictures import style
 from psph.output.pictures.names import PROFILE, PROFILE_PICTURE
@@ -102,7 +102,7 @@ class Profile:
         names = [one.name for one in self._scene.species]
         if of is not None and of not in names:
             raise MeasureError(f"measure --of {of}: nothing has this name; there are {', '.join(names)}")
-        groups = ALL if of is None else tuple(k for k, name in enumerate(names) if name == of)
+        groups = ALL if of is None else tuple(groups_named(self._scene, of))
         kinds = np.array([part.kind for part in self._scene.species])
         self._counting = counted(kinds, groups)
         self._masses = np.array([one.mass for one in self._scene.species])

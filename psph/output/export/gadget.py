@@ -56,7 +56,7 @@ def _fill(file: h5py.File, exported: Exported, k: int) -> None:
     part = exported.parts(frame["group"])
     lengths, scene = frame.pop(LENGTH, None), exported.scene
     frame.setdefault("mass", exported.masses[frame["group"]])
-    support = np.full(len(part), exported.support)
+    support = exported.support * 0.5 ** exported.levels[frame["group"]]
     if lengths is not None:
         support = exported.support / scene.smoothing_length * lengths
     counts = np.bincount(part, minlength=TYPES).astype(np.int32)

@@ -51,6 +51,11 @@ class Exported:
         return np.array([species.mass for species in self.scene.species])
 
     @cached_property
+    def levels(self) -> np.ndarray:
+        """How many times the spacing is halved of a particle of each group (psph.scene.levels)."""
+        return np.array([species.level for species in self.scene.species])
+
+    @cached_property
     def support(self) -> float:
         """Radius in m beyond which the kernel is zero."""
         return self.scene.support

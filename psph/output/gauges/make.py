@@ -1,14 +1,13 @@
 """The gauges that a case asks for."""
 
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from psph.case.keys import AXES
 from psph.moments import seam_shares
-from psph.output.flowing import ALL
+from psph.output.flowing import ALL, groups_named
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.corners import Corners
 from psph.output.gauges.displacement import DisplacementGauge
@@ -46,7 +45,7 @@ def gauge_of(scene, name: str, table):
     names = scene.layout.names
     match table.kind:
         case "force":
-            groups = tuple(k for on in asked.on for k in _groups(scene, on))
+            groups = tuple(k for on in asked.on for k in groups_named(scene, on))
             return ForceGauge(name, every, groups, asked.about, _corners(scene), _carrier(asked, names))
         case "reaction":
             return ReactionGauge.of(scene, name, every, asked)
@@ -67,10 +66,10 @@ def gauge_of(scene, name: str, table):
         case "joint":
             return JointGauge.of(scene, name, every, asked)
         case "displacement":
-            groups = tuple(_groups(scene, asked.of))
+            groups = tuple(groups_named(scene, asked.of))
             return DisplacementGauge(name, every, groups, asked.at, REACH * scene.spacing)
         case "stress":
-            groups = tuple(_groups(scene, asked.of))
+            groups = tuple(groups_named(scene, asked.of))
             keeps = any(scene.layout.parts[group].keeps_neighbours for group in groups)
             return StressGauge(name, every, groups, asked.at, REACH * scene.spacing, keeps)
         case "highest":
@@ -127,14 +126,4 @@ def _carrier(asked, names) -> Carrier | None:
 
 def _of(scene, asked) -> tuple[int, ...]:
     """The groups that a gauge of what flows counts."""
-    return ALL if asked.of is None else tuple(_groups(scene, asked.of))
-
-
-def _groups(scene, name: str) -> Iterator[int]:
-    """The groups of what has a name; of what keeps its neighbours the clamped parts among them, and of a wall
-    or a body those of other sizes."""
-    parts = scene.layout.parts
-    for part in parts:
-        whole = parts[part.whole]
-        if name in (part.name, parts[part.origin].name) or whole.keeps_neighbours and name == whole.name:
-            yield part.number
+    return ALL if asked.of is None else tuple(groups_named(scene, asked.of))
