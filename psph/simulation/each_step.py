@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise
+from psph.engine.jit import elementwise, inside
 from psph.fields import Field
 
 TICKS = 2**16
@@ -44,6 +44,18 @@ class EachStep(NamedTuple):
 def steps_of(store) -> EachStep | None:
     """Those of a ``store``; None where all take the same step."""
     return EachStep(*(store[field.name] for field in OF_STEPS)) if LONG.name in store else None
+
+
+@inside
+def ends_step(own, k):
+    """Whether the step of column ``k`` ends with that of the simulation; all do where ``own`` is None."""
+    return True if own is None else own.last[k] > 0.0
+
+
+@inside
+def step_of(own, dt, k):
+    """The step of column ``k``, s: ``dt`` where ``own`` is None."""
+    return dt if own is None else own.step[k]
 
 
 @elementwise

@@ -22,7 +22,7 @@ from psph.physics.gas.state import (
     UNEQUAL,
 )
 from psph.scene.parts.gas_sides import GasSide
-from psph.simulation.each_step import LAST
+from psph.simulation.each_step import LAST, steps_of
 from psph.simulation.gas_shares import find_shares, shares_of
 from psph.simulation.gas_steps import GasSteps
 from psph.simulation.gas_streams import Streams
@@ -206,11 +206,12 @@ class Gases(Work):
         """The largest of what limits the next step, over all ranks, and the shares of viscosity in it."""
         store, inner = self._store, self._store.inner
         self.streams.hold()
+        if self._least is not None:
+            told = self._least, self._asked.support, dt, steps_of(store), shares_of(store)
+            self._each(find_shares, *told)
         if self.steps:
             self.steps.after_sums()
             return
-        if self._least is not None:
-            self._each(find_shares, self._least, self._asked.support, dt, shares_of(store))
         per_length = 1.0 / store[LENGTH.name][inner]
         push = np.sqrt(sum(a[inner] ** 2 for a in store["acceleration"])) * per_length
         signal = store[SIGNAL.name][inner] * per_length

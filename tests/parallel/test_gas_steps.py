@@ -30,9 +30,15 @@ jitter = 0.2
 """
 
 
-def test_same_bits_with_steps_of_their_own(mpi_tmp_path):
+SWITCHED = BLAST + "[physics]\nshock_viscosity = { alpha = 1.0, beta = 2.0, least = 0.0 }\n"
+EACH = pytest.mark.parametrize("text", [BLAST, SWITCHED], ids=["everywhere", "switched"])
+"""The viscosity."""
+
+
+@EACH
+def test_same_bits_with_steps_of_their_own(text, mpi_tmp_path):
     """A shock wakes gas across the borders of ranks, while lists are made anew."""
-    case = written(mpi_tmp_path, BLAST)
+    case = written(mpi_tmp_path, text)
     single, together = start(case, MPI.COMM_SELF), start(case, MPI.COMM_WORLD)
     for _ in range(4):
         single.step()
@@ -42,6 +48,7 @@ def test_same_bits_with_steps_of_their_own(mpi_tmp_path):
     assert np.array_equal(rows(single), rows(together))
 
 
+@EACH
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
-def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
-    go_on_elsewhere(written(mpi_tmp_path, BLAST), before, after, mpi_tmp_path, many=3)
+def test_a_resume_on_other_ranks_goes_on_alike(before, after, text, mpi_tmp_path):
+    go_on_elsewhere(written(mpi_tmp_path, text), before, after, mpi_tmp_path, many=3)
