@@ -178,8 +178,18 @@ class IdealGases(Kind):
         }
 
     def planned(self, plan) -> Pace:
-        """What limits the step: at the start by sound at rest."""
-        return Pace(max(2.0 * part.quickest(self.scene.layout) for part in self.parts))
+        """What limits the step: before the first forces by sound at rest, of the start or after a fall."""
+        return Pace(
+            max(2.0 * max(part.quickest(self.scene.layout), self._fallen(part)) for part in self.parts)
+        )
+
+    def _fallen(self, part: GasPart) -> float:
+        """c/h, 1/s, of gas that falls together under its own pull as fast as is to be expected, v, and is
+        stopped: u = v²/2, so c² = γ(γ − 1) v²/2; 0 without such a pull."""
+        if self.scene.case.physics.self_gravity is None:
+            return 0.0
+        g, v = part.table.gamma, self.scene.expected_speed
+        return v * math.sqrt(0.5 * g * (g - 1.0)) / float(part.guessed(self.scene.layout).min())
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """That of the fastest signal across a smoothing length, of the largest push, and of what cools."""
@@ -244,9 +254,23 @@ class IdealGases(Kind):
         if halvings := scene.case.time.halvings:
             yield (
                 "steps",
-                f"  steps of own  a particle's step is the longest, or 2 to {2**halvings} times shorter, and "
-                f"at most {FINER:g} times what its neighbours bear; who sleeps longer is woken",
+                f"  steps of own        a particle's step is the longest, or 2 to {2**halvings} times "
+                f"shorter, and at most {FINER:g} times what its neighbours bear; who sleeps longer is woken",
             )
+            yield (
+                "steps",
+                "                      so few have forces in a step: a run is quicker than expected",
+            )
+        heated = (
+            f"after a fall at {scene.expected_speed:.3g} m/s, or as at the start where that is hotter"
+            if scene.case.physics.self_gravity
+            else "at the start"
+        )
+        yield (
+            "steps",
+            f"  not foreseen        steps are counted for gas as {heated}; shocks, and what is pressed "
+            "together, take more, what cools or thins fewer",
+        )
 
     def advice(self, guard: str, suspect) -> Iterator[str]:
         """Of heat that leaves a particle as fast as it may, and of shorter steps."""

@@ -57,6 +57,16 @@ def test_the_guess_is_within_a_factor_of_what_was_measured(name):
     assert 0.5 < found.seconds / MEASURED[name] < 2.0
 
 
+def test_a_gas_that_falls_together_is_expected_to_be_heated_by_that():
+    """The run has 249 steps; 21 as hot as it starts, which without a pull is all that is known."""
+    scene = Scene(load(CASES / "gravity/collapse.toml"))
+    assert 80 < forecast(scene, make_plan(scene), 1).steps < 250
+    weak = Scene(load(CASES / "gravity/collapse.toml", ["physics.self_gravity.constant=1e-9"]))
+    assert forecast(weak, make_plan(weak), 1).steps == 21
+    text = "\n".join(explain(scene, 1))
+    assert "after a fall at 1.42 m/s" in text
+
+
 WARNED = {
     "thrown": "physics.sound_speed: 20 is below ten times the expected speed",
     "heaving_sphere": "physics.sound_speed: 25 is below ten times the expected speed",

@@ -11,7 +11,7 @@ from psph.lab.bench.blast import COLD, HOT, RADIUS, Blast
 from psph.lab.bench.box import FluidBox
 from psph.lab.bench.command import one, standard
 from psph.lab.bench.falling import COARSEST, Falling, fall
-from psph.lab.bench.measure import _work
+from psph.lab.bench.measure import _work, go_on
 from psph.lab.bench.tank import HEIGHT, Tank
 from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
@@ -32,6 +32,19 @@ def test_as_many_particles_as_asked(dim, neighbours, many):
     assert Tank.nearest(dim, neighbours, many).particles == pytest.approx(many, rel=0.05)
     assert fallen.coarse.refined(fallen.times).particles == pytest.approx(many, rel=0.1)
     assert fallen.coarse.across <= COARSEST[dim]
+
+
+def test_a_block_counts_the_shortest_steps():
+    """Where particles take steps of their own :meth:`Simulation.step` makes many."""
+
+    class Fourfold:
+        steps = 3
+
+        def step(self):
+            self.steps += 4
+
+    simulation = Fourfold()
+    assert go_on(simulation, 10) == 12 and simulation.steps == 15
 
 
 @pytest.mark.parametrize(("dim", "neighbours"), [(2, 20), (3, 57)])
