@@ -127,15 +127,30 @@ def test_soil_with_water_in_its_pores_rests_too(tmp_path):
     assert side / whole == pytest.approx(1.0, abs=0.01) and floor == pytest.approx(1.0, abs=0.01)
 
 
+def extrapolated(folder, sticks):
+    """The bed between extrapolated walls, with friction or without, and its gauges."""
+    names = ("floor", "left", "right")
+    words = [f"walls.{name}.condition=extrapolated" for name in names]
+    words += [f"walls.{name}.no_slip=true" for name in names if sticks]
+    return begun(draft(folder, BED, *words))
+
+
 @LONG
 @pytest.mark.parametrize("sticks", (False, True))
+def test_extrapolated_walls_begin_with_it_too(sticks, tmp_path):
+    assert pushes(*extrapolated(tmp_path, sticks)) == (pytest.approx(1.0, abs=0.005),) * 2
+
+
+@LONG
+@pytest.mark.xfail(strict=True, reason="not so since smooth stress no longer spreads (76b21c80)")
+@pytest.mark.parametrize("sticks", (False, True))
 def test_extrapolated_walls_bear_it_too(sticks, tmp_path):
-    """They continued its mean stress with its whole weight: with friction the push grew by a quarter in 0.5 s."""
-    names = ("floor", "left", "right")
-    extrapolated = [f"walls.{name}.condition=extrapolated" for name in names]
-    extrapolated += [f"walls.{name}.no_slip=true" for name in names if sticks]
-    bed, gauges = begun(draft(tmp_path, BED, *extrapolated))
-    assert pushes(bed, gauges) == (pytest.approx(1.0, abs=0.005),) * 2
+    """They continued its mean stress with its whole weight: with friction the push grew by a quarter in 0.5 s.
+
+    Measured on 29 November 2026: after 0.5 s the side bears 1.045 without friction and 0.996 with, the floor
+    1.001 and 0.977; after 1 s 1.095 and 1.74, 1.003 and 0.960: with friction the lowest row comes loose.
+    """
+    bed, gauges = extrapolated(tmp_path, sticks)
     side, floor = pushes(advanced(bed, 0.5), gauges)
     assert side == pytest.approx(1.0, abs=0.025) and floor == pytest.approx(1.0, abs=0.01)
     assert fastest(bed) < 0.01
