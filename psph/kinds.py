@@ -196,6 +196,11 @@ class Kind:
         """What its work reads of neighbours of what materials fix (psph.fields.OF_MATERIAL)."""
         return ()
 
+    @property
+    def load_reads(self) -> tuple[str, ...]:
+        """What it has the push of fluid on walls and bodies read of both, where that is asked for."""
+        return ()
+
     def renews(self, passes: Sequence) -> tuple[str, ...]:
         """Fields that its work fills anew just before the ``passes`` over neighbours are summed."""
         return ()

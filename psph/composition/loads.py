@@ -62,7 +62,7 @@ class Couple(NamedTuple):
         """Take the push of neighbour j at half the way to it."""
         across = terms.pushed(zero_like(pair.x_ij), pair.u_ij, terms.shear(self.effects, i, j, pair))
         force = terms.added(across, terms.push(self.effects, i, j, pair))
-        return add(total, scale(cross(pair.x_ij, force, pair.x_ij), -0.5 * j.is_fluid))
+        return add(total, scale(cross(pair.x_ij, force, pair.x_ij), -0.5 * told(i, j)))
 
     def finish_value(self, total, i, kernel):
         """The couple, m²/s²."""
@@ -92,20 +92,34 @@ def _typed_is_due(loads, k):
     return lambda loads, k: True
 
 
-def by_fluid(loads, j, coefficient):
-    """A neighbour's share of a sum, 0 in a pass of loads unless j is fluid; None stays None."""
+def told(i, j):
+    """The part of what neighbour j does to particle i that counts as its load: 0 unless j is fluid, and where
+    levels of sizes share in it (psph.scene.levels) the mean of both shares."""
+    return 0.5 * (i.share + j.share) * j.is_fluid if hasattr(j, "share") else j.is_fluid
+
+
+@overload(told)
+def _typed_told(i, j):
+    if "share" in j.instance_class._fields:
+        return lambda i, j: 0.5 * (i.share + j.share) * j.is_fluid
+    return lambda i, j: j.is_fluid
+
+
+def by_fluid(loads, i, j, coefficient):
+    """A neighbour's part of a sum, in a pass of loads what is :func:`told` of it; None stays None."""
     if not isinstance(loads, Loads) or coefficient is None:
         return coefficient
-    return scale(coefficient, j.is_fluid) if isinstance(coefficient, tuple) else j.is_fluid * coefficient
+    part = told(i, j)
+    return scale(coefficient, part) if isinstance(coefficient, tuple) else part * coefficient
 
 
 @overload(by_fluid)
-def _typed_by_fluid(loads, j, coefficient):
+def _typed_by_fluid(loads, i, j, coefficient):
     if not _is((Loads,), loads) or isinstance(coefficient, types.NoneType):
-        return lambda loads, j, coefficient: coefficient
+        return lambda loads, i, j, coefficient: coefficient
     if isinstance(coefficient, types.BaseTuple):
-        return lambda loads, j, coefficient: scale(coefficient, j.is_fluid)
-    return lambda loads, j, coefficient: j.is_fluid * coefficient
+        return lambda loads, i, j, coefficient: scale(coefficient, told(i, j))
+    return lambda loads, i, j, coefficient: told(i, j) * coefficient
 
 
 def completed(loads, effects, reductions, folded, i, force):

@@ -7,11 +7,11 @@ import numpy as np
 from psph.fields import Field
 from psph.kinds import Created, Kind
 from psph.particles.sizes import Sizes
-from psph.scene.levels import Levels
+from psph.scene.levels import CORNER, DIVIDED, LENGTH, SHARE, Levels
 from psph.scene.particles import settled_at
 from psph.scene.parts.level import LevelPart, LevelWall
 from psph.scene.shapes import bounds
-from psph.simulation.levels import CORNER, DIVIDED, LENGTH, Resizing
+from psph.simulation.levels import Resizing
 from psph.simulation.materials import tell_of_groups
 from psph.simulation.stages import nothing
 from psph.work import Rank, Stage, Work
@@ -32,12 +32,21 @@ class Refinement(Kind):
 
     name = "refine"
     moves = True
-    fields = FIELDS
 
     @classmethod
     def is_in(cls, case) -> bool:
         """Whether a case has such regions."""
         return bool(case.space.refine)
+
+    @property
+    def fields(self) -> tuple:
+        """Whose corner they are and what follows, and where walls and bodies tell their load its share."""
+        return (*FIELDS, *([SHARE] if any(one.loaded for one in self.scene.species) else []))
+
+    @property
+    def load_reads(self) -> tuple[str, ...]:
+        """The share of its level."""
+        return (SHARE.name,)
 
     @property
     def keeps_energy(self) -> bool:

@@ -9,17 +9,17 @@ from psph.particles.neighbours import Neighbours, entries_for
 
 
 class Membership(NamedTuple):
-    """Of each column its ``level`` and whether it ``leads``."""
+    """Of each column its ``level`` and whether rows may name it: those who lead, or all fluid."""
 
     level: np.ndarray
-    leads: np.ndarray
+    named: np.ndarray
 
 
-def rows_of_leaders(
+def rows_that_name(
     lists: Neighbours, low: int, owned: int, of: Membership, asked: np.ndarray, same: bool, lanes: int
 ) -> Neighbours:
-    """Rows of those ``owned`` columns from ``low`` on that are ``asked`` (columns,): whoever leads of their
-    entries in ``lists``, in the same order, on the ``same`` level or on others.
+    """Rows of those ``owned`` columns from ``low`` on that are ``asked`` (columns,): those of their
+    entries in ``lists`` that may be named, in the same order, on the ``same`` level or on others.
 
     They are filled up to a multiple of ``lanes`` with the particle itself; all other rows are empty.
     """
@@ -28,13 +28,13 @@ def rows_of_leaders(
     ends = np.cumsum(room, dtype=np.uint64)
     lengths = np.zeros(owned, np.uint32)
     found = Neighbours(ends - room, lengths, entries_for(int(ends[-1]) if owned else 0))
-    name_leaders(owned, low, lists, of, asked, same, lanes, found)
+    name_some(owned, low, lists, of, asked, same, lanes, found)
     return found
 
 
 @compiled
-def name_leaders(owned, low, lists, of, asked, same, lanes, found):
-    """The entries of :func:`rows_of_leaders`, and how many each row has."""
+def name_some(owned, low, lists, of, asked, same, lanes, found):
+    """The entries of :func:`rows_that_name`, and how many each row has."""
     one = np.uint64(1)
     for row in range(np.uint64(owned)):
         k, begin, end = row + np.uint64(low), lists.begin[row], found.begin[row]
@@ -42,7 +42,7 @@ def name_leaders(owned, low, lists, of, asked, same, lanes, found):
             continue
         for n in range(begin, begin + np.uint64(lists.lengths[row])):
             j = np.uint64(lists.lists[n])
-            if of.leads[j] and (of.level[j] == of.level[k]) == same:
+            if of.named[j] and (of.level[j] == of.level[k]) == same:
                 found.lists[end] = j
                 end += one
         found.lengths[row] = end - found.begin[row]

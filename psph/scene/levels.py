@@ -15,12 +15,19 @@ from typing import Any
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.fields import Field, Same
 from psph.moments import normalised
 from psph.physics.motion import is_prescribed
 from psph.scene.forms.make import form_of
 from psph.scene.level_ways import way_of
 from psph.scene.shapes import Corner, bounds
 from psph.smoothing import kernel
+
+LENGTH, DIVIDED, CORNER = "own_length", "divided", "corner"
+"""Names of the fields: the smoothing length of its level; 1 where finer ones stand in its place; which corner
+of a coarser particle's cell it is."""
+
+SHARE = Field("share", "1", "share of its level of sizes in what presses on the nearest face", image=Same)
 
 REACHES = 3.0
 """Supports of a level between its region and the end of its margin: a particle at the border has neighbours
@@ -38,6 +45,9 @@ TIE = 1e-3
 """Spacings about a border within which particles go on as they are, and half of it inside of which a row has
 to begin so as to count to the region: where one stands on the border, rounding would let the coarse ones
 change sides without their corners."""
+
+BAND = 2.0
+"""Spacings of the coarser level, about a border, within which both push on walls and bodies."""
 
 AROUND = 3.0
 """Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
@@ -107,6 +117,23 @@ class Levels:
         middles = self.middles(level, points, self.corners(level, points))
         border = -0.5 * TIE * self.layout.spacing
         return (self.outside(level, middles) < border) & ~(self.outside(level + 1, points) < border)
+
+    def shares(self, level: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """The share of a ``level`` (n,) each in what all levels tell together at some ``points`` (n, dim), m:
+        they pass from one to the next within BAND spacings about the border (n,)."""
+        found = np.zeros(len(points))
+        for one in range(self.count):
+            own = np.flatnonzero(level == one)
+            found[own] = self._within(one, points[own]) - self._within(one + 1, points[own])
+        return found
+
+    def _within(self, level: int, points: np.ndarray) -> np.ndarray:
+        """1 well inside of the region of a level, 0 well outside (n,)."""
+        return np.clip(0.5 - self.outside(level, points) / self.band(level), 0.0, 1.0)
+
+    def band(self, level: int) -> float:
+        """How wide the band about the border of the region of a level is where both push on walls, m."""
+        return BAND * self.spacing(max(level - 1, 0))
 
     def corners(self, level: int, points: np.ndarray) -> np.ndarray:
         """Which corner of a coarser cell each of some sites ``points`` (n, dim) m of a level is (n,)."""

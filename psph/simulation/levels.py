@@ -13,10 +13,11 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import seen_at, view_of
 from psph.parallel.reductions import all_rows, whole_sums
-from psph.particles.level_lists import Membership, find_beside, keep_level, rows_of_leaders
+from psph.particles.level_lists import Membership, find_beside, keep_level, rows_that_name
 from psph.particles.neighbours import empty
-from psph.scene.levels import LASTS, TIE, Levels
+from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
 from psph.simulation.level_clock import LevelClock
+from psph.simulation.level_faces import FaceShares
 from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
 from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
@@ -25,10 +26,6 @@ from psph.simulation.surface_rows import rows_of
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
 from psph.work import Rank, Work
-
-LENGTH, DIVIDED, CORNER = "own_length", "divided", "corner"
-"""Names of the fields: the smoothing length of its level; 1 where finer ones stand in its place; which corner
-of a coarser particle's cell it is."""
 
 OF_FORCES = ("acceleration", "density_rate", "density_rate_1", "density_rate_2")
 """What forces give, and those who follow do not have: no pass has sums of it for them."""
@@ -94,12 +91,14 @@ class Resizing(Work):
         self.own_steps = self.clock.own
         self._loops = LevelLoops(self.plan, self.store, self.clock)
         self._loaded = self.plan.materials.loaded
+        self._shares = FaceShares(rank, self.levels)
         if self._loaded is not None:
             self._loops.push_by(empty(0, 0), None)
 
     def meet(self, maps: np.ndarray) -> None:
-        """Regions go with what carries them."""
+        """Regions go with what carries them, and faces with walls and bodies."""
         self.going.meet(maps)
+        self._shares.meet(maps)
 
     # Who is there.
 
@@ -111,6 +110,7 @@ class Resizing(Work):
         group = store.group[store.inner]
         fluid, level = self.fluid_of[group], self.level_of[group]
         self.going.move(store.owned_rows("position")[fluid & ~self.follows[group]])
+        self._shares.turn()
         away = np.full(len(group), -np.inf)
         within = np.full(len(group), np.inf)
         corner = store[CORNER][store.inner]
@@ -174,14 +174,18 @@ class Resizing(Work):
         store, lists = self.store, self.domain.lists
         listed, of = tuple(store["listed_position"]), Membership(level, leads)
         rows = lists, store.low, store.owned, of
-        others = rows_of_leaders(*rows, follows, False, 1)
+        others = rows_that_name(*rows, follows, False, 1)
         keep_level(store.owned, store.low, lists, level)
+        shares = np.zeros(store.owned, bool)
         if self._loaded is not None:
-            pushing = rows_of_leaders(*rows, self._loaded[group], True, self._lanes)
+            shares = self._shares.tell(lists)
+            everyone = lists, store.low, store.owned, Membership(level, fluid)
+            pushing = rows_that_name(*everyone, self._loaded[group], True, self._lanes)
             self._loops.push_by(pushing, self._mirrors)
-        alike = rows_of_leaders(*rows, follows, True, 1)
+        alike = rows_that_name(*rows, follows, True, 1)
         beside, inner = np.zeros(store.owned, bool), group[store.inner]
         find_beside(store.owned, store.low, lists, leads, beside)
+        beside |= shares
         following, told = self.follows[inner], self.plan.materials.given_pressure[inner]
         part = np.where(following & beside, NEAR, np.where((following | told) & ~beside, FAR, LEADING))
         self._loops.role = (len(PARTS) * level).astype(np.uint8)
@@ -287,12 +291,14 @@ class Resizing(Work):
     def state(self) -> dict:
         """What is counted, and where regions were when lists were made."""
         counts = whole_sums(self.comm, self.counts).tolist()
-        return {self.name: {"counts": counts, "moved": self.levels.moved.tolist()}}
+        stood = {"moved": self.levels.moved.tolist(), "places": self._shares.places.tolist()}
+        return {self.name: {"counts": counts} | stood}
 
     def restore(self, state: dict) -> None:
         """Go on from there: rank 0 has counted all."""
         self.counts[:] = state[self.name]["counts"] if self.comm.rank == 0 else 0
         self.levels.moved[:] = state[self.name]["moved"]
+        self._shares.places = np.array(state[self.name]["places"])
 
 
 @elementwise

@@ -13,7 +13,7 @@ from psph.case import load
 from psph.output.ledger import Ledger
 from psph.runs.setup import compile_ahead, create_particles
 from psph.scene import Scene
-from psph.scene.levels import Levels
+from psph.scene.levels import DIVIDED, LENGTH, Levels
 from psph.simulation import levels
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
@@ -386,4 +386,4 @@ def test_what_does_not_work_yet_is_refused(key, says, tmp_path):
 def test_a_scene_of_one_size_has_no_levels(tmp_path):
     text = STILL[: STILL.index(", refine")] + " }" + STILL[STILL.index("\ntime.end") :]
     plan = make_plan(Scene(draft(tmp_path, text)))
-    assert not plan.finer and plan.sizes is None and not {levels.LENGTH, levels.DIVIDED} & {*plan.arrays}
+    assert not plan.finer and plan.sizes is None and not {LENGTH, DIVIDED} & {*plan.arrays}

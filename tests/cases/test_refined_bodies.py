@@ -12,7 +12,9 @@ from runs.resuming import go_on_alike, keep, steps, taken_up
 from psph.case import load
 from psph.output.gauges import gauges_of
 from psph.scene import Scene
+from psph.scene.levels import SHARE
 from psph.simulation import levels
+from psph.simulation.level_faces import FaceShares
 
 BOX = """
 time.end = 0.4
@@ -89,9 +91,13 @@ on = ["paddle"]
 """A paddle that comes near a border, and a box that floats across it."""
 
 
-def lift(folder, lower):
+ALONG = BOX.replace("lower = [LOWER, 0.0]", "lower = [0.0, LOWER]")
+"""A border along the face of the block, not across it."""
+
+
+def lift(folder, lower, scene=BOX):
     """The mean force on the block over its buoyancy, and the moment over that and its width."""
-    simulation = start(draft(folder, BOX.replace("LOWER", f"{lower:g}")))
+    simulation = start(draft(folder, scene.replace("LOWER", f"{lower:g}")))
     gauge, found = next(iter(gauges_of(Scene(simulation_case(folder))).values())), []
     while simulation.time < 0.4:
         simulation.step(0.4)
@@ -114,19 +120,31 @@ def test_water_lifts_a_block_by_its_weight_across_a_border(lower, tmp_path):
     assert abs(force_x) < 0.02 and abs(moment) < 0.02
 
 
-def with_everyone(made):
-    """Rows of all fluid where those that lead are asked for."""
-
-    def everyone(lists, low, owned, of, asked, same, lanes):
-        return made(lists, low, owned, of._replace(leads=of.leads | same), asked, same, lanes)
-
-    return everyone
+def everyone(found, lists):
+    """Shares of 1, whatever level."""
+    store = found._store
+    store[SHARE.name][store.inner] = 1.0
+    return np.ones(store.owned, bool)
 
 
-def test_a_load_that_counts_who_follows_lifts_twice(tmp_path, monkeypatch):
+def test_a_load_of_which_all_levels_have_all_lifts_twice(tmp_path, monkeypatch):
     """The control: levels that are there twice would push twice."""
-    monkeypatch.setattr(levels, "rows_of_leaders", with_everyone(levels.rows_of_leaders))
+    monkeypatch.setattr(FaceShares, "tell", everyone)
     assert lift(tmp_path, 0.8)[1] > 1.3
+
+
+@pytest.mark.parametrize("lower, by", [(0.24, 0.004), (0.28, 0.004), (0.34, 0.04), (0.44, 0.01)])
+def test_water_lifts_it_by_its_weight_wherever_a_border_runs_along_its_face(lower, by, tmp_path):
+    """Two rows and one below its face, half a row above that, three above."""
+    force_x, force_y, moment = lift(tmp_path, lower, ALONG)
+    assert abs(force_y - 1.0) < by
+    assert abs(force_x) < 0.01 and abs(moment) < 0.01
+
+
+def test_shares_by_where_particles_are_lift_it_by_too_little(tmp_path, monkeypatch):
+    """The control: not by the nearest face."""
+    monkeypatch.setattr(FaceShares, "_nearest", lambda found, number, points: (np.zeros(len(points)), points))
+    assert abs(lift(tmp_path, 0.28, ALONG)[1] - 1.0) > 0.02
 
 
 @pytest.mark.parametrize("spin", [0.0, 4.0])
@@ -240,7 +258,7 @@ def test_sensors_read_still_water_in_finer_and_coarse_water_and_across_borders(
     assert abs(on_side - 1.0) < side and abs(on_floor - 1.0) < floor
 
 
-def test_a_sensor_that_counts_who_follows_reads_too_much(tmp_path, monkeypatch):
+def test_a_sensor_of_which_all_levels_have_all_reads_too_much(tmp_path, monkeypatch):
     """The control."""
-    monkeypatch.setattr(levels, "rows_of_leaders", with_everyone(levels.rows_of_leaders))
+    monkeypatch.setattr(FaceShares, "tell", everyone)
     assert min(sensed(tmp_path, "1.8, 1.0")) > 1.5

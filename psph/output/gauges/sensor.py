@@ -61,7 +61,7 @@ class SensorGauge(NamedTuple):
     (1 − κz) fall with the depth z of a row, so that what presses the back of a thin wall counts for
     nothing: Σ_w s_w B_w = 0, with B_w as A_w of the sites behind it.  c_w is the part of the sensor at the
     row of w, shared linearly between the two rows beside each point.  Among levels of sizes p is the sum
-    of those of the ``faces`` of all levels, on each of which only the fluid pushes that leads there.
+    of those of the ``faces`` of all levels, each of which tells its share (psph.simulation.level_faces).
     """
 
     name: str

@@ -1,0 +1,107 @@
+"""How much of what presses on walls and bodies each of their levels of sizes tells.
+
+Where walls and bodies are there on several levels, all fluid of a level pushes on its own, and of the push of
+a pair its share counts: of both particles the mean of the level's share at the face nearest to each.  Shares
+of all levels add up to one and pass into each other within some spacings about a border.  Were instead each
+bit of fluid that leads to push, a border along a face would cut off rows that bear a part of the pressure
+each, and those of another spacing bear other parts: a row in front of a face it would press by an eighth too
+much.
+"""
+
+import numpy as np
+
+from psph.particles.level_lists import find_beside
+from psph.particles.neighbours import Neighbours
+from psph.physics.motion import is_rigid
+from psph.physics.rigid.pose import PLACE
+from psph.scene.forms.make import form_of
+from psph.scene.levels import SHARE, Levels
+from psph.scene.shapes import bounds
+from psph.work import Rank
+
+NEAR = 1.5
+"""Supports of the coarsest level beside a band where levels share, farther from which no face is in it that a
+particle sees or is behind."""
+
+WITHIN = 1e-3
+"""Spacings from the ends of the domain within which a wall has no face: it goes on there."""
+
+
+class FaceShares:
+    """The shares of the ``levels`` of a rank in what presses on its walls and bodies.
+
+    ``places`` (motions, dim, 1 + dim) are the maps of rigid motions when lists were made.
+    """
+
+    def __init__(self, rank: Rank, levels: Levels):
+        self._layout, materials = rank.scene.layout, rank.plan.materials
+        self._store, self._domain, self._levels = rank.store, rank.domain, levels
+        species = materials.species
+        self._level_of = np.array([one.level for one in species])
+        self._pose_of = [
+            materials.pose_of[n] if is_rigid(one.motion) else -1 for n, one in enumerate(species)
+        ]
+        origins = [part.origin for part in self._layout.parts]
+        self._origin_of, self._fluid_of = np.array(origins), np.array([one.is_fluid for one in species])
+        self._loaded = materials.loaded
+        self._faced = [] if self._loaded is None else np.unique(self._origin_of[self._loaded])
+        self._maps: np.ndarray | None = None
+        self.places = np.zeros((0, 0, 0))
+
+    def meet(self, maps: np.ndarray | None) -> None:
+        """Get the maps of all rigid motions, or None."""
+        self._maps = maps
+
+    def turn(self) -> None:
+        """To how walls and bodies stand now, when new lists are made."""
+        if self._maps is not None:
+            self.places = self._maps[:, PLACE].copy()
+
+    def tell(self, lists: Neighbours) -> np.ndarray:
+        """Write the shares of walls and bodies whose push is asked for, and of the fluid that sees them in
+        ``lists``; who of the owned particles has any (owned,)."""
+        store, layout, levels = self._store, self._layout, self._levels
+        groups, beside = self._domain.groups(), np.zeros(store.owned, bool)
+        find_beside(store.owned, store.low, lists, self._loaded[groups], beside)
+        group = groups[store.inner]
+        fluid, loaded = self._fluid_of[group] & beside, self._loaded[group]
+        rows = np.flatnonzero(fluid | loaded)
+        where = np.stack([x[store.inner][rows] for x in store["listed_position"]], axis=1)
+        level, inside = self._level_of[group[rows]], self._domain.inside(where)
+        away = [np.abs(levels.outside(one, inside)) for one in range(1, levels.count)]
+        near = np.flatnonzero(np.min(away, axis=0) < NEAR * layout.support + levels.band(1))
+        face, least = where[near], np.full(len(near), np.inf)
+        of, flows = self._origin_of[group[rows[near]]], fluid[rows[near]]
+        for number in self._faced:
+            asked = np.flatnonzero(flows | (of == number))
+            away, points = self._nearest(number, where[near[asked]])
+            nearer = away < least[asked]
+            least[asked[nearer]], face[asked[nearer]] = away[nearer], points[nearer]
+        where[near] = face
+        share = store[SHARE.name][store.inner]
+        share[:] = 0.0
+        share[rows] = levels.shares(level, self._domain.inside(where))
+        return share > 0.0
+
+    def _nearest(self, number: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """How far some ``points`` (n, dim), m, are from the nearest face of a part of the layout (n,), and
+        where that is (n, dim)."""
+        layout, row = self._layout, self._pose_of[number]
+        shape, lower, upper = layout.parts[number].shape, np.array(layout.lower), np.array(layout.upper)
+        start = points.copy()
+        if row >= 0:
+            place = self.places[row]
+            middle = place[:, 0] + place[:, 1:] @ (0.5 * np.sum(bounds(shape), axis=0))
+            for d, period in enumerate(layout.periods):
+                if period is not None:
+                    start[:, d] -= period * np.rint((start[:, d] - middle[d]) / period)
+            start = _by(start - place[:, 0], place[:, 1:])
+        room = lower + WITHIN * layout.spacing, upper - WITHIN * layout.spacing
+        faces = form_of(shape).endless(lower, upper, layout.periods).faces(start, room)
+        way = np.where(np.isfinite(faces.away), -faces.away, 0.0)[:, None] * faces.normal
+        return np.abs(faces.away), points + (_by(way, self.places[row][:, 1:].T) if row >= 0 else way)
+
+
+def _by(vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Sums over e of ``vectors`` (n, e) times ``turn`` (e, dim), in one order on any processor."""
+    return sum(vectors[:, e, None] * turn[e] for e in range(len(turn)))
