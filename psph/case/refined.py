@@ -49,6 +49,8 @@ def refined(case) -> Iterator[Finding]:
             yield (*where, "moves_with"), one.moves_with, says
         elif one.front and one.front[0] not in AXES[: case.space.dimensions]:
             yield (*where, "front"), one.front, f"no such axis in {case.space.dimensions}D"
+        elif one.front and one.front[0] in case.space.periodic:
+            yield (*where, "front"), one.front, "nothing is farthest along an axis that repeats; take another"
     if case.space.refine:
         for loc, what in _unfit(case):
             yield loc, ..., f"does not work with space.refine yet: {what}; take one of the two out"

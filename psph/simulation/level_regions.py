@@ -13,6 +13,11 @@ from psph.scene.levels import STRAYS, Levels
 from psph.scene.shapes import bounds
 from psph.work import Rank
 
+LEAPS = 1.25
+"""Supports of the finest level by which a region goes at once after a front that leaps, as where water comes
+in ahead of it: a little more than a particle strays until new lists are made.  Had it gone farther than its
+margin, coarse particles would follow finer ones that are still to be born, and nobody would lead."""
+
 
 class GoingAlong:
     """The regions of the ``levels`` of a scene on a rank, which moves them."""
@@ -20,7 +25,8 @@ class GoingAlong:
     def __init__(self, rank: Rank, levels: Levels):
         layout, pose_of = rank.scene.layout, rank.plan.materials.pose_of
         self._levels, self._comm, self._periods = levels, rank.domain.comm, layout.periods
-        self._farthest = STRAYS * levels.support(levels.count - 1)
+        finest = levels.support(levels.count - 1)
+        self._farthest, self._leap = STRAYS * finest, LEAPS * finest
         self._maps = np.zeros((0, 0, 0, 0))
         self._carried, self._fronts = [], []
         leads = [n for n, one in enumerate(rank.scene.species) if one.is_fluid and one.mobile]
@@ -53,7 +59,8 @@ class GoingAlong:
             moved[number] = self._nearest(self._with(row, middle))
         ends = [(way * fluid[:, axis]).max(initial=-np.inf) for _, axis, way, _ in self._fronts]
         for (number, axis, way, begun), end in zip(self._fronts, largest(self._comm, ends) if ends else ()):
-            moved[number, axis] = way * end - begun
+            left = way * end - begun - moved[number, axis]
+            moved[number, axis] += np.clip(left, -self._leap, self._leap) if np.isfinite(left) else 0.0
 
     def _with(self, row: int, middle: np.ndarray) -> np.ndarray:
         """How far a point at the ``middle``, m (dim,), at the start has gone with a rigid motion."""

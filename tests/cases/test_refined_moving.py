@@ -134,6 +134,18 @@ def test_finer_particles_go_with_the_front(tmp_path):
     assert mass.sum() == pytest.approx(160.0, rel=0.01)
 
 
+def test_a_region_leaps_no_farther_than_a_margin_bears(tmp_path):
+    """Where water comes in ahead of a front; where there is none any more it stays."""
+    simulation = start(draft(tmp_path, RUNNING))
+    work = simulation.engine.of("refine")
+    support, ahead = work.levels.support(1), np.array([[1.4, 0.2]])
+    for expected in (1.25 * support, 2.5 * support):
+        work.going.move(ahead)
+        assert work.levels.moved[0] == pytest.approx([expected, 0.0])
+    work.going.move(ahead[:0])
+    assert work.levels.moved[0] == pytest.approx([2.5 * support, 0.0])
+
+
 def carried(folder):
     """The box that flies."""
     return draft(folder, CARRIED)
@@ -178,6 +190,11 @@ def test_regions_that_cannot_move_so_are_refused(refine, says, tmp_path):
     text = SHAKEN.replace("SPACING", "0.04").replace("REFINE", AROUND.replace('moves_with = "block"', refine))
     [line] = refusal(tmp_path, text)
     assert says in line and "space.refine" in line
+
+
+def test_a_front_needs_an_axis_with_ends(tmp_path):
+    [line] = refusal(tmp_path, CARRIED.replace('moves_with = "box"', 'front = "x.lower"'))
+    assert "space.refine[0].front" in line and "nothing is farthest along an axis that repeats" in line
 
 
 def finer_of(case, wall):
