@@ -6,7 +6,15 @@ from physics.pairs import pair_of, sums_of, view
 
 from psph.composition.pair import Pair
 from psph.physics.stress.deviator import CorrectedDeviatoricForce, DeviatoricForce, DeviatorRate, jaumann_rate
-from psph.physics.stress.faces import CorrectedSmoothFace, SmoothFace, facing
+from psph.physics.stress.faces import (
+    STEEPEST,
+    CorrectedSmoothFace,
+    OwnPressure,
+    SmoothFace,
+    StillColumn,
+    facing,
+    steepness,
+)
 
 UPPER = {2: ((0, 0), (0, 1), (1, 1)), 3: ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))}
 
@@ -88,6 +96,22 @@ def test_a_rough_wall_shows_what_stands_before_it_its_own_stress():
     for wall, steep in ((4500.0, 2.0), (-900.0, 0.2), (9e4, 3.0)):  # (p + tip) of the wall over that of soil
         other = DeviatoricForce().push(*pair_of(rough._replace(pressure=np.array([2e3, wall])), 0, 1))
         assert other == pytest.approx((1.0 + steep) * np.array(one), rel=1e-12)
+
+
+def test_by_the_weight_of_a_still_column_it_shows_more_below_whatever_its_own_pressure():
+    p = view()
+    p = p._replace(
+        pressure=np.array([2e3, 9e4]), cone_tip=np.array([500.0, 0.0]), no_slip=np.array([0.0, 1.0])
+    )
+    p = p._replace(rest_coefficient=np.array([0.4, 0.7]), rest_density=np.array([1500.0, 1900.0]))
+    i, j, pair = pair_of(p, 0, 1)
+    gravity = (-3.0, -2.0)
+    deeper = -np.dot(pair.x_ij, gravity) * 1500.0 * (1.0 + 2.0 * 0.4) / 3.0  # of what soil weighs aside by K₀
+    found = steepness(StillColumn(gravity), i, j, pair)
+    assert found[1] == pytest.approx(1.0 + deeper / 2500.0) and found[1] != 1.0
+    deeper = np.dot(pair.x_ij, gravity) * 1900.0 * (1.0 + 2.0 * 0.7) / 3.0
+    assert found[0] == pytest.approx(1.0 + deeper / 90500.0)
+    assert steepness(OwnPressure(), i, j, pair) == (pytest.approx(2500.0 / 90500.0), STEEPEST)
 
 
 @pytest.mark.parametrize("dim", (2, 3))

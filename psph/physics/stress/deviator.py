@@ -13,7 +13,7 @@ from psph.formula import helper
 from psph.physics.damping.diffusion import diffusion_step
 from psph.physics.facts import Facts
 from psph.physics.fluid.strain import FEWEST, linear_gradient, no_rate, rate_weight, take_rate
-from psph.physics.stress.faces import Sticking, across, counts, faces_of, steepness
+from psph.physics.stress.faces import OwnPressure, Sticking, across, column_of, counts, faces_of, steepness
 from psph.physics.stress.spreading import AnyOrder, levelled, order_of, spread
 from psph.vectors import (
     add,
@@ -151,15 +151,18 @@ class DeviatoricForce(NamedTuple):
 
     acts = (SOILS, UPDATED)
 
+    column: Any = OwnPressure()
+
     conserves = ("momentum",)
 
     def in_scene(self, scene: Facts):
         """With corrected gradients, the form that has them."""
-        return self if scene.physics.gradient_correction is None else CorrectedDeviatoricForce()
+        plain = scene.physics.gradient_correction is None
+        return (DeviatoricForce if plain else CorrectedDeviatoricForce)(column_of(scene))
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        own, other = shown(i, j)
+        own, other = shown(self.column, i, j, pair)
         both = add(scale(i.deviator, own), scale(j.deviator, other))
         return scale(times(both, pair.x_ij), pair.m_dw_r)
 
@@ -171,11 +174,13 @@ class CorrectedDeviatoricForce(NamedTuple):
     :class:`psph.physics.fluid.correction.GradientCorrection`; walls as in :class:`DeviatoricForce`.
     """
 
+    column: Any = OwnPressure()
+
     conserves = ("momentum",)
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        own, other = shown(i, j)
+        own, other = shown(self.column, i, j, pair)
         x = pair.x_ij
         at_i = times(i.deviator, add(x, times(i.gradient_correction, x)))
         at_j = times(j.deviator, add(x, times(j.gradient_correction, x)))
@@ -183,11 +188,11 @@ class CorrectedDeviatoricForce(NamedTuple):
 
 
 @helper
-def shown(i, j):
+def shown(column, i, j, pair):
     """1/ρ_i² and 1/ρ_j² as factors of s_i and s_j; a wall without slip shows what is before it that one's s.
 
     In proportion to the pressure (:func:`steepness`).  What does not resist shear has s = 0.
     """
-    steep_i, steep_j = steepness(i, j)
+    steep_i, steep_j = steepness(column, i, j, pair)
     own, other = i.specific_volume * i.specific_volume, j.specific_volume * j.specific_volume
     return own * (1.0 + j.no_slip * steep_j), other * (1.0 + i.no_slip * steep_i)

@@ -1,14 +1,14 @@
 """Walls along which what resists shear slides: they bear its stress across their face, and none along it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from psph.acts import SOILS, UPDATED
 from psph.engine.jit import call_by_type
 from psph.fields import VECTOR, Field, Same, Turned
 from psph.formula import helper, where
 from psph.physics.facts import Facts
-from psph.physics.motion import is_rigid
-from psph.vectors import add, dot, scale, subtract, times
+from psph.physics.motion import is_prescribed, is_rigid
+from psph.vectors import add, along, dot, scale, subtract, times
 
 NORMAL = Field(
     "face_normal",
@@ -35,8 +35,67 @@ STEEPEST = 3.0
 thick the weight on the first row of the wall over that on its own."""
 
 
+class StillColumn(NamedTuple):
+    """A wall's pressure beside soil is as the weight of that makes it grow to there.
+
+    ``gravity`` in m/s², None on an axis without.  By its own pressure a wall would show a grain that rises,
+    whose pressure falls, more of its stress, which lifts it further: rows on a floor with friction came loose
+    at rest.
+    """
+
+    gravity: tuple[float | None, ...] = ()
+
+    def grown(self, at_i, at_j, i, j, pair):
+        """That of i over that of j, and of j over that of i."""
+        deeper = along(pair.x_ij, self.gravity)
+        at_i, at_j = at_i + NO_PRESSURE, at_j + NO_PRESSURE
+        return 1.0 + mean_weight(j) * deeper / at_j, 1.0 - mean_weight(i) * deeper / at_i
+
+
+class OwnPressure(NamedTuple):
+    """A wall's pressure is what it has: what moves may press on soil beyond any weight, as may a frame."""
+
+    def grown(self, at_i, at_j, i, j, pair):
+        """That of i over that of j, and of j over that of i."""
+        return at_i / (at_j + NO_PRESSURE), at_j / (at_i + NO_PRESSURE)
+
+
+class BesideBodies(NamedTuple):
+    """That of a body is what it has, and that of a wall is as :class:`StillColumn` has it."""
+
+    still: StillColumn
+
+    def grown(self, at_i, at_j, i, j, pair):
+        """That of i over that of j, and of j over that of i."""
+        column, own = grown(self.still, at_i, at_j, i, j, pair), grown(OwnPressure(), at_i, at_j, i, j, pair)
+        of_body = max(i.solid, j.solid) > WALLS
+        return where(of_body, own[0], column[0]), where(of_body, own[1], column[1])
+
+
+WALLS = 1.0
+"""The number of all walls among solids."""
+
+grown = call_by_type("grown")
+"""(column, at_i, at_j, i, j, pair) → the ratios of pressures ``at_i`` and ``at_j``, Pa above a cone's tip."""
+
+
 @helper
-def steepness(i, j):
+def mean_weight(j):
+    """By what the mean stress of soil at rest grows downwards, over gravity, kg/m³: by K₀ aside."""
+    return (1.0 + 2.0 * j.rest_coefficient) / 3.0 * j.rest_density
+
+
+def column_of(scene: Facts):
+    """How the pressure of walls is told: by the type of its answer the loops are compiled."""
+    walls = [one for one in scene.species if one.solid == WALLS]
+    if scene.frame or any(is_prescribed(one.motion) for one in walls):
+        return OwnPressure()
+    still = StillColumn(tuple(g or None for g in scene.gravity))
+    return BesideBodies(still) if any(one.solid > WALLS for one in scene.species) else still
+
+
+@helper
+def steepness(column, i, j, pair):
     """The pressure of i over that of j, and of j over that of i, from the tip of the cone of a soil on.
 
     In these proportions a wall shows a soil its stress: so friction is that at the face, not that half a
@@ -44,7 +103,8 @@ def steepness(i, j):
     """
     tip = i.cone_tip + j.cone_tip
     at_i, at_j = max(i.pressure, 0.0) + tip, max(j.pressure, 0.0) + tip
-    return min(at_i / (at_j + NO_PRESSURE), STEEPEST), min(at_j / (at_i + NO_PRESSURE), STEEPEST)
+    of_i, of_j = grown(column, at_i, at_j, i, j, pair)
+    return min(max(of_i, 0.0), STEEPEST), min(max(of_j, 0.0), STEEPEST)
 
 
 NO_PRESSURE = 1e-30
@@ -142,13 +202,16 @@ class SmoothFace(NamedTuple):
     acts = (SOILS, UPDATED)
 
     turns: bool = False
+    column: Any = OwnPressure()
 
     def in_scene(self, scene: Facts):
         """With corrected gradients, the form that has them; None where no wall is smooth."""
         if isinstance(faces_of(scene), Sticking):
             return None
         turns = any(is_smooth(one) and is_rigid(one.motion) for one in scene.species)
-        return (SmoothFace if scene.physics.gradient_correction is None else CorrectedSmoothFace)(turns)
+        return (SmoothFace if scene.physics.gradient_correction is None else CorrectedSmoothFace)(
+            turns, column_of(scene)
+        )
 
     @property
     def drawn(self) -> tuple[Field, ...]:
@@ -161,7 +224,7 @@ class SmoothFace(NamedTuple):
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        n, twice, at_i, at_j = faced(i, j, pair)
+        n, twice, at_i, at_j = faced(self.column, i, j, pair)
         both = add(scale(i.deviator, at_i), scale(j.deviator, at_j))
         return scale(mirrored(n, twice, both, pair.x_ij), pair.m_dw_r)
 
@@ -174,12 +237,13 @@ class CorrectedSmoothFace(NamedTuple):
     """
 
     turns: bool = False
+    column: Any = OwnPressure()
 
     drawn = SmoothFace.drawn
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        n, twice, at_i, at_j = faced(i, j, pair)
+        n, twice, at_i, at_j = faced(self.column, i, j, pair)
         x = pair.x_ij
         own = mirrored(n, twice, i.deviator, add(x, times(i.gradient_correction, x)))
         other = mirrored(n, twice, j.deviator, add(x, times(j.gradient_correction, x)))
@@ -187,10 +251,10 @@ class CorrectedSmoothFace(NamedTuple):
 
 
 @helper
-def faced(i, j, pair):
+def faced(column, i, j, pair):
     """The normal n of the face between i and j, 2/n², the factors of s_i and s_j, m⁶/kg²; 0 without one."""
     edge, normal = i.face_edge + j.face_edge, subtract(j.face_normal, i.face_normal)
     n = facing(normal, subtract(j.face_side, i.face_side), edge, pair)
-    face, (steep_i, steep_j) = behind(n, edge), steepness(i, j)
+    face, (steep_i, steep_j) = behind(n, edge), steepness(column, i, j, pair)
     own, other = i.specific_volume * i.specific_volume, j.specific_volume * j.specific_volume
     return n, 2.0 / max(dot(n, n), NO_LENGTH), own * (face * steep_j), other * (face * steep_i)
