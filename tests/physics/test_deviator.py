@@ -6,15 +6,7 @@ from physics.pairs import pair_of, sums_of, view
 
 from psph.composition.pair import Pair
 from psph.physics.stress.deviator import CorrectedDeviatoricForce, DeviatoricForce, DeviatorRate, jaumann_rate
-from psph.physics.stress.faces import (
-    STEEPEST,
-    CorrectedSmoothFace,
-    OwnPressure,
-    SmoothFace,
-    StillColumn,
-    facing,
-    steepness,
-)
+from psph.physics.stress.faces import CorrectedSmoothFace, SmoothFace, StillColumn, facing, steepness
 
 UPPER = {2: ((0, 0), (0, 1), (1, 1)), 3: ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))}
 
@@ -98,20 +90,18 @@ def test_a_rough_wall_shows_what_stands_before_it_its_own_stress():
         assert other == pytest.approx((1.0 + steep) * np.array(one), rel=1e-12)
 
 
-def test_by_the_weight_of_a_still_column_it_shows_more_below_whatever_its_own_pressure():
+@pytest.mark.parametrize("wall, share", ((-900.0, 1.8 / 3.0), (9e4, 2.0), (None, 0.8)))
+def test_the_weight_of_a_still_column_bounds_what_it_shows_by_its_own_pressure(wall, share):
     p = view()
-    p = p._replace(
-        pressure=np.array([2e3, 9e4]), cone_tip=np.array([500.0, 0.0]), no_slip=np.array([0.0, 1.0])
-    )
+    p = p._replace(cone_tip=np.array([500.0, 0.0]), no_slip=np.array([0.0, 1.0]))
     p = p._replace(rest_coefficient=np.array([0.4, 0.7]), rest_density=np.array([1500.0, 1900.0]))
+    p = p._replace(pressure=np.array([2e3, 0.0]))
     i, j, pair = pair_of(p, 0, 1)
-    gravity = (-3.0, -2.0)
-    deeper = -np.dot(pair.x_ij, gravity) * 1500.0 * (1.0 + 2.0 * 0.4) / 3.0  # of what soil weighs aside by K₀
-    found = steepness(StillColumn(gravity), i, j, pair)
-    assert found[1] == pytest.approx(1.0 + deeper / 2500.0) and found[1] != 1.0
-    deeper = np.dot(pair.x_ij, gravity) * 1900.0 * (1.0 + 2.0 * 0.7) / 3.0
-    assert found[0] == pytest.approx(1.0 + deeper / 90500.0)
-    assert steepness(OwnPressure(), i, j, pair) == (pytest.approx(2500.0 / 90500.0), STEEPEST)
+    gravity = tuple(-1.0 * np.array(pair.x_ij) / np.dot(pair.x_ij, pair.x_ij))  # the wall is below
+    weight = 1500.0 * 1.0  # of soil between both
+    p = p._replace(pressure=np.array([2e3, 2e3 + share * weight if wall is None else wall]))
+    i, j, pair = pair_of(p, 0, 1)
+    assert steepness(StillColumn(gravity), i, j, pair)[1] == pytest.approx(1.0 + share * weight / 2500.0)
 
 
 @pytest.mark.parametrize("dim", (2, 3))

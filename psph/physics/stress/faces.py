@@ -36,20 +36,21 @@ thick the weight on the first row of the wall over that on its own."""
 
 
 class StillColumn(NamedTuple):
-    """A wall's pressure beside soil is as the weight of that makes it grow to there.
+    """A wall's pressure beside soil is what it has, within bounds by the weight of a still column.
 
-    ``gravity`` in m/s², None on an axis without.  By its own pressure a wall would show a grain that rises,
-    whose pressure falls, more of its stress, which lifts it further: rows on a floor with friction came loose
-    at rest.
+    ``gravity`` in m/s², None on an axis without.  Down a column at rest it grows by (1 + 2K₀)/3 of the
+    weight, as the mean stress does; it may by TWICE of it.  Without these bounds a wall shows a grain that
+    rises, whose pressure falls, more of its stress, which lifts it further: rows on a floor with friction
+    came loose at rest.
     """
 
     gravity: tuple[float | None, ...] = ()
 
     def grown(self, at_i, at_j, i, j, pair):
         """That of i over that of j, and of j over that of i."""
-        deeper = along(pair.x_ij, self.gravity)
-        at_i, at_j = at_i + NO_PRESSURE, at_j + NO_PRESSURE
-        return 1.0 + mean_weight(j) * deeper / at_j, 1.0 - mean_weight(i) * deeper / at_i
+        deeper, own = along(pair.x_ij, self.gravity), grown(OwnPressure(), at_i, at_j, i, j, pair)
+        by_j, by_i = deeper / (at_j + NO_PRESSURE), -deeper / (at_i + NO_PRESSURE)
+        return within_column(own[0], j, by_j), within_column(own[1], i, by_i)
 
 
 class OwnPressure(NamedTuple):
@@ -80,9 +81,14 @@ grown = call_by_type("grown")
 
 
 @helper
-def mean_weight(j):
-    """By what the mean stress of soil at rest grows downwards, over gravity, kg/m³: by K₀ aside."""
-    return (1.0 + 2.0 * j.rest_coefficient) / 3.0 * j.rest_density
+def within_column(ratio, j, deeper):
+    """A ``ratio`` of pressures to that of soil j, within that at rest and that of TWICE its weight.
+
+    ``deeper`` is (x − x_j)·g over its pressure, m³/kg.
+    """
+    weight = j.rest_density * deeper
+    at_rest = (1.0 + 2.0 * j.rest_coefficient) / 3.0 * weight
+    return 1.0 + min(max(ratio - 1.0, min(at_rest, TWICE * weight)), max(at_rest, TWICE * weight))
 
 
 def column_of(scene: Facts):
@@ -106,6 +112,9 @@ def steepness(column, i, j, pair):
     of_i, of_j = grown(column, at_i, at_j, i, j, pair)
     return min(max(of_i, 0.0), STEEPEST), min(max(of_j, 0.0), STEEPEST)
 
+
+TWICE = 2.0
+"""Most of the weight of a still column by which a pressure grows in it: soil that slides is at about all."""
 
 NO_PRESSURE = 1e-30
 """Keeps no pressure from dividing by zero, Pa."""
