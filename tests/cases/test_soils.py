@@ -69,12 +69,9 @@ def test_a_column_runs_out_as_in_experiments_whatever_the_spacing(column):
 
 
 @LONG
-def test_the_heap_of_a_column_rests(column, request):
+def test_the_heap_of_a_column_rests(column):
     """Single particles before the front find no friction and glide on."""
-    spacing, run = column
-    if spacing == 0.005:
-        creep = "5.5 mm/s, from 0.5 to 0.7 s 5 to 9: its front stands, its inside creeps (docs/soils.md)"
-        request.applymarker(pytest.mark.xfail(strict=True, reason=creep))
+    _, run = column
     behind = sand(run, "position")[:, 0] < front_of(run)
     assert np.sqrt((sand(run, "velocity")[behind] ** 2).sum(axis=1).mean()) < 0.005
 
