@@ -20,7 +20,7 @@ from psph.simulation.least_squares import factor, solve
 from psph.simulation.level_images import is_near
 from psph.simulation.surface_rows import RowsAtRest, borne, weighed
 from psph.smoothing import weight
-from psph.vectors import add, at, dot, multiply, nearest_image, put, subtract
+from psph.vectors import add, at, dot, multiply, nearest_image, put, scale, subtract
 
 FLAT = 0.01
 """Variance of a term of the fit, in spacings, less what terms before it tell, below which it is left out."""
@@ -65,15 +65,13 @@ class Weighed(NamedTuple):
 
 
 class Followed(NamedTuple):
-    """Whom each of some particles follows: from ``begin`` (n,) on ``many`` (n,) entries, the ``column`` of
-    each, the number of its ``image`` in mirrors and what the pressure of that is ``beyond`` its own, Pa, its
-    ``share`` c in pressure and density and its share in the ``flow``.  ``longest`` is the longest row."""
+    """Whom each of some particles follows: from ``begin`` (n,) on the entries that the first image in mirrors
+    shows, ``many`` (n, images), then those of the next; the ``column`` of each entry, its ``share`` c in
+    pressure and density and its share in the ``flow``.  ``longest`` is the longest row."""
 
     begin: np.ndarray
     many: np.ndarray
     column: np.ndarray
-    image: np.ndarray
-    beyond: np.ndarray
     share: np.ndarray
     flow: np.ndarray
     longest: int
@@ -90,30 +88,47 @@ class OfLeaders(NamedTuple):
     density: Any
 
 
+class AsLed(NamedTuple):
+    """What is read of those who lead and no field: their ``density`` by their volume, kg/m³, and ρ g times
+    the ``depth`` at which their rows bear their pressures, Pa (columns,)."""
+
+    density: np.ndarray
+    depth: np.ndarray
+
+
 class LevelFit(NamedTuple):
-    """Room for a fit: its ``terms`` (n,) 1, t and tt, Σw times their products ``square`` (n, n), and
-    ``share`` (n,), what of Σw times each makes f₀, with terms of second order ``second`` (n,); ``place``
-    (longest, dim), in spacings, of entries."""
+    """Room for a fit: the ``terms`` (n, longest) 1, t and tt of entries, those times their ``weight``
+    (n, longest), the sums of the products of both, ``square`` (n, n), and ``share`` (n,), what of Σw times
+    each makes f₀, with terms of second order ``second`` (n,)."""
 
     terms: np.ndarray
+    weight: np.ndarray
     square: np.ndarray
     share: np.ndarray
     second: np.ndarray
-    place: np.ndarray
 
 
 @helper
 def room_for(dimensions, order, longest):
     """LevelFit for a fit of an ``order``."""
     n = 1 if order == 0 else 1 + dimensions if order == 1 else (dimensions + 1) * (dimensions + 2) // 2
-    square, place = np.zeros((n, n)), np.empty((longest, dimensions))
-    return LevelFit(np.zeros(n), square, np.zeros(n), np.zeros(n), place)
+    terms, square = np.empty((n, longest)), np.zeros((n, n))
+    return LevelFit(terms, np.empty((n, longest)), square, np.zeros(n), np.zeros(n))
 
 
 @elementwise
-def follow(first, last, columns, scale, leaders, images, weighing, anew, followed, state, fall):
+def weigh_rows(first, last, length, rows, state, led):
+    """What ``led`` says of the columns from the ``first`` to the one before the ``last``, whose smoothing
+    ``length`` is in m."""
+    for k in range(first, last):
+        led.density[k] = 1.0 / state.volume[k]
+        led.depth[k] = weighed(rows, length[k], state.pressure[k])
+
+
+@elementwise
+def follow(first, last, columns, spacing, leaders, images, weighing, anew, followed, state, led, fall):
     """Give some ``columns`` (n,) the state of those they follow, from the ``first`` to the one before the
-    ``last``; ``scale`` (n,) m is the spacing of those, which have ``images`` (psph.simulation.level_images).
+    ``last``; ``spacing`` (n,) m is that of those, which have ``images`` (psph.simulation.level_images).
 
     With ``anew`` whom they follow is found first.  Whoever has too few falls, by ``fall`` (dim,) m/s.
     """
@@ -121,9 +136,9 @@ def follow(first, last, columns, scale, leaders, images, weighing, anew, followe
     for n in range(first, last):
         k = np.uint64(columns[n])
         if anew:
-            followed.many[n] = find(k, scale[n], leaders, images, weighing, room, followed, n)
-        if followed.many[n]:
-            take_after(k, followed, n, leaders.length, images, weighing.rows, state)
+            find(k, spacing[n], leaders, images, weighing, room, followed, n)
+        if followed.many[n].sum():
+            take_after(k, followed, n, leaders, images, weighing.rows, state, led)
         else:
             for d in range(len(fall)):
                 state.velocity[d][k] += fall[d]
@@ -131,28 +146,32 @@ def follow(first, last, columns, scale, leaders, images, weighing, anew, followe
 
 
 @helper
-def find(k, scale, leaders, images, weighing, room, followed, n):
-    """The columns whom ``k`` follows and their shares, by a fit, in row ``n``; returns how many there are."""
-    dim, begin = len(leaders.position), followed.begin[n]
-    share = followed.share[begin:]
-    told = followed.column[begin:], followed.image[begin:], followed.beyond[begin:], share
-    room.square[:] = 0.0
-    many = take_row(k, scale, leaders, leaders.own, images, weighing, room, told, 0)
-    many = take_row(k, scale, leaders, leaders.others, images, weighing, room, told, many)
+def find(k, spacing, leaders, images, weighing, room, followed, n):
+    """Whom ``k`` follows and their shares, by a fit, in row ``n``; nobody where they are too few."""
+    dim, begin, many = len(leaders.position), followed.begin[n], 0
+    column, share, flow = followed.column[begin:], followed.share[begin:], followed.flow[begin:]
+    for m in range(len(images.turn[0])):
+        before = many
+        if is_near(images, m, at(leaders.position, k)):
+            many = take_row(k, spacing, leaders, leaders.own, images, m, weighing, room, column, many)
+            many = take_row(k, spacing, leaders, leaders.others, images, m, weighing, room, column, many)
+        followed.many[n, m] = many - before
+    sum_products(dim, room, many)
     total = room.square[0, 0]
     if total <= TOO_FEW:
-        return 0
+        followed.many[n] = 0
+        return
     factor(room.square, FLAT)
     set_shares(dim, total, room)
     linear = part_of(FIRST, total)
-    for n in range(many):
-        set_terms(dim, room.place[n], room.terms)
-        part = 0.0
-        for one in range(len(room.share)):
-            part += room.share[one] * room.terms[one]
-        followed.flow[begin + np.uint64(n)] = share[n] * (linear * part + (1.0 - linear) / total)
-        share[n] *= part
-    return many
+    share[:many] = 0.0
+    for one in range(len(room.share)):
+        of = room.share[one]
+        for entry in range(many):
+            share[entry] += of * room.weight[one, entry]
+    for entry in range(many):
+        mean = room.weight[0, entry] / total
+        flow[entry] = linear * share[entry] + (1.0 - linear) * mean
 
 
 @helper
@@ -174,75 +193,74 @@ def set_shares(dim, total, room):
 
 
 @helper
-def take_row(k, scale, leaders, lists, images, weighing, room, told, many):
-    """Take those who lead in a row into the sums of column ``k``, and into the arrays ``told``, column,
-    image, beyond and share, behind ``many`` entries; returns how many there are then."""
-    row, dim, x_k = k - np.uint64(leaders.low), len(leaders.position), at(leaders.position, k)
+def take_row(k, spacing, leaders, lists, images, m, weighing, room, column, many):
+    """Take those who lead in a row of column ``k``, as image ``m`` shows them, behind ``many`` entries: the
+    ``column`` of each, where it is and its weight; returns how many there are then."""
+    row, x_k = k - np.uint64(leaders.low), at(leaders.position, k)
     entry, last = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
-    column, image, beyond, share = told
     while entry < last:
         j = np.uint64(lists.lists[entry])
         entry += np.uint64(1)
-        for m in range(len(images.turn[0])):
-            if not is_near(images, m, x_k):
-                continue
-            x_j = at(leaders.position, j)
-            seen = add(multiply(at(images.turn, m), x_j), at(images.shift, m))
-            x_jk = nearest_image(subtract(seen, x_k), weighing.periods)
-            w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / leaders.length[j])
-            if w > 0.0:
-                for d in range(dim):
-                    room.place[many, d] = x_jk[d] / scale
-                column[many], image[many], beyond[many], share[many] = (
-                    j,
-                    m,
-                    dot(images.weight, subtract(seen, x_j)),
-                    w,
-                )
-                set_terms(dim, room.place[many], room.terms)
-                for one in range(len(room.terms)):
-                    part = w * room.terms[one]
-                    for other in range(one + 1):
-                        room.square[one, other] += part * room.terms[other]
-                many += 1
+        x_j = at(leaders.position, j)
+        seen = add(multiply(at(images.turn, m), x_j), at(images.shift, m))
+        x_jk = nearest_image(subtract(seen, x_k), weighing.periods)
+        w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / leaders.length[j])
+        if w > 0.0:
+            column[many], room.weight[0, many] = j, w
+            for d in range(len(x_jk)):
+                room.terms[min(1 + d, len(room.terms) - 1), many] = x_jk[d] / spacing
+            many += 1
     return many
 
 
 @helper
-def set_terms(dim, x, terms):
-    """1, t and tt, as many as there are, of a place ``x`` (dim,) beside a particle, in spacings."""
-    terms[0] = 1.0
-    if len(terms) > 1:
-        for d in range(dim):
-            terms[1 + d] = x[d]
-    n = 1 + dim
-    if len(terms) > n:
-        for one in range(dim):
-            for other in range(one, dim):
-                terms[n] = x[one] * x[other]
-                n += 1
+def sum_products(dim, room, many):
+    """Set the terms of ``many`` entries by where they are, those times their weights, and the sums of the
+    products of both, of which the lower half is set."""
+    terms, weights, count = room.terms, room.weight, 1 + dim
+    for one in range(dim if len(terms) > count else 0):
+        for other in range(one, dim):
+            for entry in range(many):
+                terms[count, entry] = terms[1 + one, entry] * terms[1 + other, entry]
+            count += 1
+    terms[0, :many] = 1.0
+    for one in range(1, len(terms)):
+        for entry in range(many):
+            weights[one, entry] = weights[0, entry] * terms[one, entry]
+    for one in range(len(terms)):
+        for other in range(one + 1):
+            total = 0.0
+            for entry in range(many):
+                total += weights[one, entry] * terms[other, entry]
+            room.square[one, other] = total
 
 
 @helper
-def take_after(k, followed, n, length, images, rows, state):
-    """Column ``k`` gets the sums of the shares of row ``n`` times what each column that it follows has;
-    ``length`` m is the smoothing length of columns."""
-    density, seen, depth = 0.0, 0.0, 0.0
-    first = followed.begin[n]
-    for entry in range(first, first + followed.many[n]):
-        j, c = followed.column[entry], followed.share[entry]
-        beyond = followed.beyond[entry]
-        pressure = state.pressure[j] + beyond
-        density += c / state.volume[j] + c * beyond * rows.softness
-        seen += c * pressure
-        depth += c * weighed(rows, length[j], pressure)
-    pressure = borne(rows, length[k], depth)
+def take_after(k, followed, n, leaders, images, rows, state, led):
+    """Column ``k`` gets the sums of the shares of row ``n`` times what each column that it follows has."""
+    density, seen, depth, first = 0.0, 0.0, 0.0, followed.begin[n]
+    velocity = scale(at(state.velocity, k), 0.0)
+    for m in range(len(images.turn[0])):
+        last, flow, moving = first + followed.many[n, m], 0.0, scale(velocity, 0.0)
+        for entry in range(first, last):
+            j, share, part = followed.column[entry], followed.share[entry], followed.flow[entry]
+            density += share * led.density[j]
+            seen += share * state.pressure[j]
+            depth += share * led.depth[j]
+            flow += part
+            moving = add(moving, scale(at(state.predicted, j), part))
+        velocity = add(velocity, multiply(at(images.turn_velocity, m), moving))
+        velocity = add(velocity, scale(at(images.shift_velocity, m), flow))
+        for entry in range(first, last if images.deeper[m] else first):
+            j, share = followed.column[entry], followed.share[entry]
+            x_j = at(leaders.position, j)
+            shown = add(multiply(at(images.turn, m), x_j), at(images.shift, m))
+            beyond = dot(images.weight, subtract(shown, x_j))
+            density += share * beyond * rows.softness
+            seen += share * beyond
+            depth += share * (weighed(rows, leaders.length[j], state.pressure[j] + beyond) - led.depth[j])
+        first = last
+    pressure = borne(rows, leaders.length[k], depth)
     density += (pressure - seen) * rows.softness
     state.density[k], state.volume[k], state.pressure[k] = density, 1.0 / density, pressure
-    for d in range(len(state.velocity)):
-        v = 0.0
-        for entry in range(first, first + followed.many[n]):
-            j, m = followed.column[entry], followed.image[entry]
-            seen = images.turn_velocity[d][m] * state.predicted[d][j] + images.shift_velocity[d][m]
-            v += followed.flow[entry] * seen
-        state.velocity[d][k] = v
+    put(state.velocity, k, velocity)

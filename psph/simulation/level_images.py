@@ -16,7 +16,7 @@ class LeaderImages(NamedTuple):
     """The images of a particle at x m with v m/s, itself the first: at ``turn`` x + ``shift`` m, with
     ``turn_velocity`` v + ``shift_velocity`` m/s, components (dim,) (images,).  Nothing is seen farther than
     ``reach`` m from a plane.  The pressure of a still column changes by ``weight`` (dim,), Pa/m, along each
-    axis."""
+    axis: where an image is ``deeper`` (images,) than what it shows, or higher, it has another."""
 
     turn: tuple[np.ndarray, ...]
     shift: tuple[np.ndarray, ...]
@@ -24,6 +24,7 @@ class LeaderImages(NamedTuple):
     shift_velocity: tuple[np.ndarray, ...]
     reach: float
     weight: tuple[float, ...]
+    deeper: np.ndarray
 
     def shown_to(self, position: np.ndarray) -> np.ndarray:
         """How many images of others particles at ``position`` (n, dim), m, may see (n,)."""
@@ -36,13 +37,17 @@ class LeaderImages(NamedTuple):
 def images_in(mirrors: Mirrors | None, gravity: np.ndarray, density: float) -> LeaderImages:
     """What ``mirrors`` show of a fluid of a ``density``, kg/m³, under ``gravity`` (dim,), m/s²; without any,
     itself."""
-    weight = tuple((density * gravity).tolist())
+    weight = density * gravity
     if mirrors is None:
-        one, none = (tuple(np.full((len(gravity), 1), value)) for value in (1.0, 0.0))
-        return LeaderImages(one, none, one, none, 0.0, weight)
-    names = "turn", "shift", "turn_velocity", "shift_velocity"
-    told = (np.array([getattr(one, name) for one in mirrors.reflections]).T.copy() for name in names)
-    return LeaderImages(*map(tuple, told), float(mirrors.reach), weight)
+        one, none = np.ones((len(gravity), 1)), np.zeros((len(gravity), 1))
+        told = [one, none, one, none]
+    else:
+        names = "turn", "shift", "turn_velocity", "shift_velocity"
+        told = [np.array([getattr(one, name) for one in mirrors.reflections]).T.copy() for name in names]
+    turn, shift, *_ = told
+    deeper = (weight[:, None] * (np.abs(shift) + np.abs(turn - 1.0))).any(axis=0)
+    reach = 0.0 if mirrors is None else float(mirrors.reach)
+    return LeaderImages(*map(tuple, told), reach, tuple(weight.tolist()), deeper)
 
 
 @helper

@@ -18,7 +18,7 @@ from psph.particles.neighbours import empty
 from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_faces import FaceShares
-from psph.simulation.level_fit import ORDER, Followed, Leaders, OfLeaders, Weighed, follow
+from psph.simulation.level_fit import ORDER, AsLed, Followed, Leaders, OfLeaders, Weighed, follow, weigh_rows
 from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
 from psph.simulation.level_regions import GoingAlong
@@ -82,7 +82,7 @@ class Resizing(Work):
         cell = (scene.spacing / scene.smoothing_length) ** scene.dimensions
         unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
         self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene))
-        self._follow, self._go = settled(follow), settled(go_along)
+        self._follow, self._go, self._weigh = map(settled, (follow, go_along, weigh_rows))
         self._lanes, self._mirrors = rank.plan.space.lanes, rank.plan.mirrors
         if any(plane.motion for plane in rank.plan.planes):
             self._mirrors = self._mirrors._replace(reach=math.inf)  # wherever they go
@@ -202,10 +202,11 @@ class Resizing(Work):
         self._scale = self.levels.layout.spacing * 0.5 ** self._followed(where, level[self.columns])
         self._aside = self._steps_aside(where, level[self.columns])
         seen = alike.lengths[own].astype(np.int64) + others.lengths[own]
-        seen *= self._images(self._mirrors).shown_to(where)
-        begins, many = np.cumsum(seen) - seen, np.zeros(len(own), np.int64)
+        images = self._images(self._mirrors)
+        seen *= images.shown_to(where)
+        begins, many = np.cumsum(seen) - seen, np.zeros((len(own), len(images.deeper)), np.int64)
         size, longest = int(seen.sum()), int(seen.max(initial=0))
-        entries = np.empty(size, np.uint32), np.zeros(size, np.uint8), *np.empty((3, size))
+        entries = np.empty(size, np.uint32), *np.empty((2, size))
         self._sides = [
             Side(some, one, Followed(begins[some], many[some], *entries, longest), every)
             for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
@@ -249,12 +250,15 @@ class Resizing(Work):
                 self.domain.halo.refresh(self.plan.refreshed)
             simulation.listed = False  # ghosts are fresh, but for what follows
         images = self._images(simulation.engine.neighbourhood.mirrors)
+        due = [side for side in self._sides if self.clock.every(side.every)[side.level]]
+        names = "velocity", "predicted_velocity", "specific_volume", "pressure", "density"
+        state = OfLeaders(*(self.store[name] for name in names))
         with self.ledger("refine"):
-            for side in self._sides:
-                if self.clock.every(side.every)[side.level]:
-                    steps = side.every * int(self.clock.pace[side.level])
-                    fall = steps * simulation.dt * self.gravity
-                    self._impose(side, images, fall)
+            led = AsLed(*np.empty((2, len(state.volume))))
+            in_threads(self._weigh, 0, len(led.depth), self._leaders.length, self._weighing.rows, state, led)
+            for side in due:
+                steps = side.every * int(self.clock.pace[side.level])
+                self._impose(side, images, state, led, steps * simulation.dt * self.gravity)
 
     def _images(self, mirrors) -> LeaderImages:
         """What ``mirrors`` show of the fluid."""
@@ -264,14 +268,12 @@ class Resizing(Work):
         """Whether any level needs a pass."""
         return bool(self.clock.due(one).any())
 
-    def _impose(self, side: Side, images: LeaderImages, fall: np.ndarray) -> None:
-        """The state of some, by those whom they have followed since lists were made, or whom they find, by
-        all their ``images``; who has too few gets ``fall`` (dim,) m/s."""
-        names = "velocity", "predicted_velocity", "specific_volume", "pressure", "density"
-        state = OfLeaders(*(self.store[name] for name in names))
-        columns, scale = self.columns[side.some], self._scale[side.some]
-        whom = columns, scale, self._leaders, images, self._weighing, side.begin(), side.followed
-        in_threads(self._follow, 0, len(columns), *whom, state, fall)
+    def _impose(self, side: Side, images: LeaderImages, state: OfLeaders, led: AsLed, fall) -> None:
+        """The ``state`` of some, by those whom they have followed since lists were made, or whom they find,
+        by all their ``images``; who has too few gets ``fall`` (dim,) m/s."""
+        columns, spacing = self.columns[side.some], self._scale[side.some]
+        whom = columns, spacing, self._leaders, images, self._weighing, side.begin(), side.followed
+        in_threads(self._follow, 0, len(columns), *whom, state, led, fall)
 
     def loops(self, one, loop, seen: tuple, sums) -> Iterator[tuple]:
         """A pass level by level."""
