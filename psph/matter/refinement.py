@@ -17,8 +17,15 @@ from psph.simulation.stages import nothing
 from psph.work import Rank, Stage, Work
 
 SKINS = {1: 0.3, 2: 0.3, 3: 0.24}
-"""Part of the support by which lists reach farther at the least, by dimensions: in 3D longer rows cost more,
+"""Part of the support by which lists reach farther at the most, by dimensions: in 3D longer rows cost more,
 in 2D new lists."""
+
+LEAST_SKIN = 0.06
+"""That down to which lists narrow where they last."""
+
+DEAR = 10.0
+"""Time of new lists, and of whom to follow by them, over that of a step's pairs: by it the dam break in 2D
+keeps 0.3, and a sphere that heaves in 3D gets 0.12."""
 
 FIELDS = (
     Field(LENGTH, "m", "smoothing length of its level of sizes"),
@@ -72,11 +79,18 @@ class Refinement(Kind):
     def sizes(self) -> Sizes:
         """By the level of each particle; only who follows looks at other levels.  Who leads and who divides
         is found with new lists: nobody strays by more than a third of the narrowest margin until then."""
-        skin = max(SKINS[self.scene.dimensions], self.scene.case.neighbours.skin)
         follows = np.array([one.follows for one in self.scene.species])
         finest = self.levels.support(self.levels.count - 1)
         return Sizes(
-            self.scene.kernel.support, skin, LENGTH, LENGTH, growth=1.0, across=follows, strays=finest
+            self.scene.kernel.support,
+            max(SKINS[self.scene.dimensions], self.scene.case.neighbours.skin),
+            LENGTH,
+            LENGTH,
+            growth=1.0,
+            across=follows,
+            strays=finest,
+            least=LEAST_SKIN,
+            dear=DEAR,
         )
 
     @property

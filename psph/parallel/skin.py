@@ -49,7 +49,8 @@ class Bounds(NamedTuple):
 
     Lists that serve n passes by a skin s, a part of the support, serve as many the longer the wider it is:
     with the wear σ = s/n a pass costs P (1 + s)^d + R σ/s, P for the pairs within the support, R for new
-    lists.  Both take about as long in the default scheme, so s = √(σ/d) is the best.
+    lists, and s = √(σR/(dP)) is the best.  Both take about as long in the default scheme; where new lists ask
+    for more, they are so many times as ``dear``, R/P.
     """
 
     least: float
@@ -57,12 +58,13 @@ class Bounds(NamedTuple):
     support: float
     dimensions: int
     passes: int
+    dear: float = 1.0
 
     def wide_enough(self, width: float, served: int) -> float:
         """The width after lists of this ``width``, m, that have served so many steps: half-way to the best,
         as each of the last lists may have been the exception."""
         wear = width / (self.support * served * self.passes)
-        best = self.support * (wear / self.dimensions) ** 0.5
+        best = self.support * (self.dear * wear / self.dimensions) ** 0.5
         return min(max((width * best) ** 0.5, self.least), self.most)
 
 

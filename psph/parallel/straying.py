@@ -8,7 +8,7 @@ import numpy as np
 from psph.engine.threads import in_threads
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
-from psph.parallel.skin import PART_OF_CUTOFF, PART_OF_PERIOD
+from psph.parallel.skin import PART_OF_CUTOFF, PART_OF_PERIOD, Bounds
 from psph.particles.drift_by_size import shares_moved, stray
 from psph.particles.sizes import Sizes
 
@@ -39,7 +39,8 @@ class Straying:
     drives on goes ``together``.  Beside mirrors that is not asked: an image goes the other way.  Where sizes
     stay, nobody looks at that again before a bound by the last look asks for it.  No particle is more than
     ``farthest`` m from where it was listed.  By ``growth`` (owned,) a smoothing length may be larger than
-    then for lists to hold.  The same on every rank.
+    then for lists to hold.  Where sizes say so, the skin is as wide as pays by how long the last lists have
+    served.  The same on every rank.
     """
 
     def __init__(self, domain: Domain, sizes: Sizes, together: bool):
@@ -48,6 +49,9 @@ class Straying:
         self._drift, self._since = (0.0,) * domain.store.dimensions, 0.0
         self.growth = np.zeros(0)
         self._look: Look | None = None
+        self._served, self._bounds = 0, None  # there are no lists yet
+        if sizes.least is not None:
+            self._bounds = Bounds(sizes.least, sizes.skin, 1.0, domain.store.dimensions, 1, sizes.dear)
 
     @property
     def farthest(self) -> float:
@@ -56,23 +60,31 @@ class Straying:
         return min(usual, self._sizes.strays)
 
     def choose(self) -> None:
-        """Lists reach by sizes alone."""
+        """How far lists reach that are made now."""
+        if self._bounds is not None and self._served:
+            self._take(self._bounds.wide_enough(self._sizes.skin, self._served))
+
+    def _take(self, skin: float) -> None:
+        """Lists reach so much farther, as a part of the support."""
+        self._sizes = self.domain.sizes = self._sizes._replace(skin=skin)
 
     def reach_as(self, state) -> None:
-        """Always so."""
+        """Lists reach as far as those did that are known so well."""
+        self._take(state["skin"])
 
     def renew(self) -> None:
         """The lists are new; collective."""
         store, inner = self.domain.store, self.domain.store.inner
         terms = [store.shown("mass"), *(store.shown("mass") * v[inner] for v in store["velocity"])]
         mass, *momentum = exact_sums(self.domain.comm, np.stack(terms, axis=1)).tolist()
-        self._drift, self._since = tuple(p / mass for p in momentum), 0.0
+        self._drift, self._since, self._served = tuple(p / mass for p in momentum), 0.0, 1
         self.growth = np.full(store.owned, self._sizes.growth_left(0.0, 0.0))
         self._look = None
 
     def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
         """True: it is measured once particles have moved by the step of ``dt`` s, see :meth:`reach`."""
         self._since += dt
+        self._served += 1
         return True
 
     def reach(self) -> bool:
@@ -130,8 +142,10 @@ class Straying:
 
     def state(self) -> dict:
         """What :meth:`reach` rests on beside the particles."""
-        return {"drift": self._drift, "since": self._since}
+        known = {"drift": self._drift, "since": self._since}
+        return known | {"skin": self._sizes.skin, "served": self._served}
 
     def restore(self, state: dict) -> None:
         """Go on as if the lists had been in use since they were made."""
         self._drift, self._since, self._look = tuple(state["drift"]), state["since"], None
+        self._served = state["served"]

@@ -29,7 +29,8 @@ class Sizes(NamedTuple):
     the ways that both of a pair have strayed, and what lengths have grown by, share what is more than 1.
     ``across`` (groups,) says which groups list others of all levels of sizes, each as far as that one
     reaches, and not of their own alone; None: all do, as far as one of the two reaches.  Nobody ``strays``
-    farther, m, from where lists were made."""
+    farther, m, from where lists were made.  Where lists last, the skin narrows down to the ``least``, with
+    new ones so many times as ``dear`` as the pairs of a step; None: it stays."""
 
     support: float
     skin: float
@@ -39,6 +40,8 @@ class Sizes(NamedTuple):
     growth: float = GROWTH
     across: np.ndarray | None = None
     strays: float = math.inf
+    least: float | None = None
+    dear: float = 1.0
 
     def reach(self, length):
         """Distance up to which a particle lists others, m, by its smoothing ``length``."""

@@ -242,15 +242,15 @@ def test_the_skin_follows_how_long_lists_serve(speed, width):
     assert counts[0] != counts[1] and (counts[0] > counts[1]) == (width > WIDE)
 
 
-@pytest.mark.parametrize(("dimensions", "wear"), [(2, 0.02), (3, 0.05)])
-def test_the_best_width_is_where_lists_and_pairs_cost_least(dimensions, wear):
-    """That of (1 + s)^d + wear/s, as long as s is small."""
-    bounds = Bounds(1e-6, 1.0, 1.0, dimensions, 1)
+@pytest.mark.parametrize(("dimensions", "wear", "dear"), [(2, 0.02, 1.0), (3, 0.05, 1.0), (2, 0.002, 10.0)])
+def test_the_best_width_is_where_lists_and_pairs_cost_least(dimensions, wear, dear):
+    """That of (1 + s)^d + dear·wear/s, as long as s is small."""
+    bounds = Bounds(1e-6, 1.0, 1.0, dimensions, 1, dear)
     width = 0.05
     for _ in range(60):
         width = bounds.wide_enough(width, width / wear)
     s = np.linspace(0.01, 0.6, 5901)
-    costs = (1.0 + s) ** dimensions + wear / s
+    costs = (1.0 + s) ** dimensions + dear * wear / s
     assert np.interp(width, s, costs) < 1.01 * costs.min()
     assert np.interp(3.0 * width, s, costs) > 1.03 * costs.min()
 

@@ -6,6 +6,7 @@ from cases.test_refined import begun, stream, together
 from mpi4py import MPI
 from parallel.test_simulation import state
 
+from psph.matter.refinement import LEAST_SKIN, SKINS
 from psph.parallel.straying import Straying
 
 
@@ -14,12 +15,12 @@ def long_wave(folder):
     return stream(folder, length=2.4, width=0.3, lower=0.6, upper=1.8, speed=0.0)
 
 
-def shorn(case, steps, comm=MPI.COMM_SELF):
-    """Shear with a long wave, whose neighbours go together for long: the simulation after
+def shorn(case, steps, comm=MPI.COMM_SELF, speed=1.0):
+    """Shear with a long wave, whose neighbours go together for long, at a ``speed``, m/s: the simulation after
     some steps, those in which lists were made, and how often neighbours were looked at."""
     simulation = begun(
         case,
-        lambda x: np.stack([0.0 * x[:, 0], np.sin(2.0 * np.pi * x[:, 0] / 2.4)], axis=1),
+        lambda x: np.stack([0.0 * x[:, 0], speed * np.sin(2.0 * np.pi * x[:, 0] / 2.4)], axis=1),
         lambda x: 0.0 * x[:, 0],
         comm,
     )
@@ -73,6 +74,20 @@ def test_who_goes_on_looks_again_and_has_the_same_lists(tmp_path):
         cut.step()
     assert cut.domain.rebuilds == whole.domain.rebuilds > 3
     assert np.array_equal(state(cut)[0], state(whole)[0])
+
+
+def test_lists_reach_as_far_as_pays(tmp_path):
+    """They stay wide where they soon are worn; where they last they narrow, by as much on from a checkpoint."""
+    case = long_wave(tmp_path)
+    fast, slow = (shorn(case, steps, speed=speed)[0] for speed, steps in ((3.0, 40), (0.3, 200)))
+    widths = [one.domain.sizes.skin for one in (fast, slow)]
+    assert fast.domain.rebuilds > 4 and widths[0] == SKINS[2]
+    assert slow.domain.rebuilds > 4 and LEAST_SKIN < widths[1] < 0.5 * SKINS[2]
+    entries = [int(one.domain.lists.lengths[: one.store.owned].sum()) for one in (fast, slow)]
+    assert entries[1] < 0.85 * entries[0]
+    again = begun(case, lambda x: 0.0 * x, lambda x: 0.0 * x[:, 0])
+    again.neighbourhood.skin.reach_as(slow.neighbourhood.skin.state())
+    assert again.domain.sizes.skin == widths[1]
 
 
 @pytest.mark.mpi(min_size=2)

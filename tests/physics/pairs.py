@@ -64,7 +64,7 @@ def view(n=2, dim=2, seed=3):
         strain_rate=rng.uniform(0.0, 30.0, n),
         grip=np.resize((0.0, 0.6, 1.0), n),
         rheology=np.resize((1.0, 0.0, 2.0), n),
-        solid=np.resize((2.0, 2.0, 3.0), n),
+        solid=np.resize((2.0, 3.0, 2.0), n),
         shear_modulus=np.resize((4e4, 0.0, 7e4), n),
         strength=np.resize((1.0, 0.0, 2.0), n),
         wave_speed=np.resize((60.0, 50.0, 45.0), n),
