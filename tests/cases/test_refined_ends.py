@@ -106,17 +106,18 @@ def test_a_stream_keeps_its_flux_and_profile_through_a_finer_region(tmp_path, mo
 
 
 def test_what_comes_less_what_goes_is_there(tmp_path):
-    """Where rows of a channel fill, those that lead have as much more mass as the books say, but for parts of
-    a coarse row that is about to change sides at a border."""
-    simulation = start(channel(tmp_path))
+    """Where rows of a channel fill, those that lead have as much more mass in the mean as the books say; now and
+    then parts of a coarse row, 0.025 of the channel, are about to change sides at a border."""
+    simulation, off = start(channel(tmp_path)), []
     before = leading(simulation)[3].sum()
     while simulation.time < 1.0:
         simulation.step(1.0)
-    books = [one.books for one in simulation.engine.of("ends").states]
-    _, _, _, m, level = leading(simulation)
+        books = [one.books for one in simulation.engine.of("ends").states]
+        net = sum(one.mass_in - one.mass_out for one in books)
+        _, _, _, m, level = leading(simulation)
+        off.append((m.sum() - before - net) / before)
     assert min(books[0].number_in, books[1].number_out) > 4
-    net = sum(one.mass_in - one.mass_out for one in books)
-    assert m.sum() - before == pytest.approx(net, abs=0.004 * before)
+    assert abs(np.mean(off)) < 0.001 and max(map(abs, off)) < 0.02
     assert set(level) == {0, 1}
     species = simulation.plan.materials.species
     ended = np.array([one.ends_fluid for one in species])[simulation.store.shown("group")]
