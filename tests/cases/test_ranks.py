@@ -98,6 +98,7 @@ END = {
     "refined/block_in_waves": 0.02,
     "refined/heaving_sphere": 0.005,
     "refined/dam_break": 0.05,
+    "refined/slot": 0.008,
     "ends/open_poiseuille": 0.15,
     "ends/open_channel": 0.15,
     "ends/nozzle": 0.12,
