@@ -67,6 +67,7 @@ class Fixed(NamedTuple):
     """Particles stay where they are."""
 
     kind = WALL
+    drift = (0.0, 0.0, 0.0)
 
 
 class Buffered(NamedTuple):
@@ -138,6 +139,11 @@ def is_prescribed(motion) -> bool:
 def deforms(motion) -> bool:
     """Whether a motion says so for each particle by itself."""
     return hasattr(motion, "place")
+
+
+def drift(motion):
+    """The velocity, m/s, that all that moves so has at all times, or None."""
+    return getattr(motion, "drift", None)
 
 
 def is_rigid(motion) -> bool:

@@ -1,12 +1,26 @@
 """A deviatoric stress that evolves: its rate in a linear flow, and the force of a pair."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from physics.pairs import pair_of, sums_of, view
 
 from psph.composition.pair import Pair
+from psph.physics.motion import Fixed
+from psph.physics.rigid.laws import SteadyRate
+from psph.physics.rigid.motion import MotionPart, Rigid
+from psph.physics.rigid.schedule import ActingTime
 from psph.physics.stress.deviator import CorrectedDeviatoricForce, DeviatoricForce, DeviatorRate, jaumann_rate
-from psph.physics.stress.faces import CorrectedSmoothFace, SmoothFace, StillColumn, facing, steepness
+from psph.physics.stress.faces import (
+    CorrectedSmoothFace,
+    OwnPressure,
+    SmoothFace,
+    StillColumn,
+    column_of,
+    facing,
+    steepness,
+)
 
 UPPER = {2: ((0, 0), (0, 1), (1, 1)), 3: ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))}
 
@@ -143,3 +157,21 @@ def test_of_two_faces_as_near_the_one_before_a_particle_counts(towards, face):
     whole = found @ found
     assert whole == pytest.approx(0.0) if face is None else whole > 0.8
     assert face is None or found == pytest.approx(np.sqrt(whole) * faces[face])
+
+
+def walls(*motions):
+    """A scene with walls that move so."""
+    species = [SimpleNamespace(solid=1.0, motion=motion) for motion in motions]
+    return SimpleNamespace(species=species, gravity=(0.0, -9.81), frame=None)
+
+
+def steady(speed, spin=0.0, **acting):
+    """A steady motion along x, m/s, and turn, rad/s."""
+    return Rigid((MotionPart(SteadyRate((speed, 0.0, 0.0, spin)), ActingTime(**acting)),))
+
+
+def test_walls_that_all_drift_alike_are_as_walls_at_rest():
+    still, two = StillColumn((None, -9.81)), steady(2.0)
+    assert column_of(walls(Fixed(), Fixed())) == column_of(walls(two, two)) == still
+    for others in ((Fixed(), two), (two, steady(3.0)), (steady(2.0, start=1.0),), (steady(2.0, spin=1.0),)):
+        assert column_of(walls(*others)) == OwnPressure()

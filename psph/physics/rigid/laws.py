@@ -32,6 +32,10 @@ class SteadyRate(NamedTuple):
         """The law."""
         return _scaled(self.rate, schedule.lasted(time))
 
+    def drift(self, schedule: ActingTime) -> Vector | None:
+        """The velocity, m/s, that it has at all times, or None."""
+        return self.rate[:3] if schedule == ActingTime() and self.rate[3] == 0.0 else None
+
 
 class Accelerated(NamedTuple):
     """Constant accelerations: s = a ∫∫r dt dt; ``change`` a in m/s².  What was gained stays after the end."""

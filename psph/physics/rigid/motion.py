@@ -49,6 +49,12 @@ class Rigid(NamedTuple):
 
     kind = WALL
 
+    @property
+    def drift(self) -> Vector | None:
+        """The velocity, m/s, with which it goes at all times without a turn, or None."""
+        own = [part.law.drift(part.schedule) if hasattr(part.law, "drift") else None for part in self.parts]
+        return None if None in own else tuple(map(sum, zip(*own)))
+
     def pose(self, time: float) -> Pose:
         """The pose of the whole at ``time``, s."""
         return reduce(combined, (part.pose(time) for part in self.parts))

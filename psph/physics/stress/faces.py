@@ -7,7 +7,7 @@ from psph.engine.jit import call_by_type
 from psph.fields import VECTOR, Field, Same, Turned
 from psph.formula import helper, where
 from psph.physics.facts import Facts
-from psph.physics.motion import is_prescribed, is_rigid
+from psph.physics.motion import drift, is_rigid
 from psph.vectors import add, along, dot, scale, subtract, times
 
 NORMAL = Field(
@@ -92,9 +92,12 @@ def within_column(ratio, j, deeper):
 
 
 def column_of(scene: Facts):
-    """How the pressure of walls is told: by the type of its answer the loops are compiled."""
-    walls = [one for one in scene.species if one.solid == WALLS]
-    if scene.frame or any(is_prescribed(one.motion) for one in walls):
+    """How the pressure of walls is told: by the type of its answer the loops are compiled.
+
+    Where all walls drift alike the scene is as where they rest.
+    """
+    drifts = {drift(one.motion) for one in scene.species if one.solid == WALLS}
+    if scene.frame or None in drifts or len(drifts) > 1:
         return OwnPressure()
     still = StillColumn(tuple(g or None for g in scene.gravity))
     return BesideBodies(still) if any(one.solid > WALLS for one in scene.species) else still
