@@ -6,7 +6,7 @@ from numba.core import types
 
 from psph.composition import terms
 from psph.engine.jit import overload
-from psph.vectors import add, by_dimension, scale, zero_like
+from psph.vectors import add, by_dimension, dot, scale, zero_like
 
 cross = by_dimension(
     lambda a, b, like: (),
@@ -62,7 +62,7 @@ class Couple(NamedTuple):
         """Take the push of neighbour j at half the way to it."""
         across = terms.pushed(zero_like(pair.x_ij), pair.u_ij, terms.shear(self.effects, i, j, pair))
         force = terms.added(across, terms.push(self.effects, i, j, pair))
-        return add(total, scale(cross(pair.x_ij, force, pair.x_ij), -0.5 * told(i, j)))
+        return add(total, scale(cross(pair.x_ij, force, pair.x_ij), -0.5 * told(j, pair)))
 
     def finish_value(self, total, i, kernel):
         """The couple, m²/s²."""
@@ -92,34 +92,36 @@ def _typed_is_due(loads, k):
     return lambda loads, k: True
 
 
-def told(i, j):
-    """The part of what neighbour j does to particle i that counts as its load: 0 unless j is fluid, and where
-    levels of sizes share in it (psph.scene.levels) the mean of both shares."""
-    return 0.5 * (i.share + j.share) * j.is_fluid if hasattr(j, "share") else j.is_fluid
+def told(j, pair):
+    """The part of what neighbour j does that counts as a load: 0 unless j is fluid, and where levels of sizes
+    share in it (psph.scene.levels) the share half the way to who bears it, s_j + ∇s_j·(x_i − x_j)/2."""
+    if not hasattr(j, "share"):
+        return j.is_fluid
+    return (j.share + 0.5 * dot(j.share_slope, pair.x_ij)) * j.is_fluid
 
 
 @overload(told)
-def _typed_told(i, j):
+def _typed_told(j, pair):
     if "share" in j.instance_class._fields:
-        return lambda i, j: 0.5 * (i.share + j.share) * j.is_fluid
-    return lambda i, j: j.is_fluid
+        return lambda j, pair: (j.share + 0.5 * dot(j.share_slope, pair.x_ij)) * j.is_fluid
+    return lambda j, pair: j.is_fluid
 
 
-def by_fluid(loads, i, j, coefficient):
+def by_fluid(loads, j, pair, coefficient):
     """A neighbour's part of a sum, in a pass of loads what is :func:`told` of it; None stays None."""
     if not isinstance(loads, Loads) or coefficient is None:
         return coefficient
-    part = told(i, j)
+    part = told(j, pair)
     return scale(coefficient, part) if isinstance(coefficient, tuple) else part * coefficient
 
 
 @overload(by_fluid)
-def _typed_by_fluid(loads, i, j, coefficient):
+def _typed_by_fluid(loads, j, pair, coefficient):
     if not _is((Loads,), loads) or isinstance(coefficient, types.NoneType):
-        return lambda loads, i, j, coefficient: coefficient
+        return lambda loads, j, pair, coefficient: coefficient
     if isinstance(coefficient, types.BaseTuple):
-        return lambda loads, i, j, coefficient: scale(coefficient, told(i, j))
-    return lambda loads, i, j, coefficient: told(i, j) * coefficient
+        return lambda loads, j, pair, coefficient: scale(coefficient, told(j, pair))
+    return lambda loads, j, pair, coefficient: told(j, pair) * coefficient
 
 
 def completed(loads, effects, reductions, folded, i, force):

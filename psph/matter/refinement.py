@@ -7,7 +7,7 @@ import numpy as np
 from psph.fields import Field
 from psph.kinds import Created, Kind
 from psph.particles.sizes import Sizes
-from psph.scene.levels import CORNER, DIVIDED, LENGTH, SHARE, Levels
+from psph.scene.levels import CORNER, DIVIDED, LENGTH, SHARE, SLOPE, Levels
 from psph.scene.particles import settled_at
 from psph.scene.parts.level import LevelPart, LevelWall
 from psph.scene.shapes import bounds
@@ -48,12 +48,12 @@ class Refinement(Kind):
     @property
     def fields(self) -> tuple:
         """Whose corner they are and what follows, and where walls and bodies tell their load its share."""
-        return (*FIELDS, *([SHARE] if any(one.loaded for one in self.scene.species) else []))
+        return (*FIELDS, *([SHARE, SLOPE] if any(one.loaded for one in self.scene.species) else []))
 
     @property
     def load_reads(self) -> tuple[str, ...]:
-        """The share of its level."""
-        return (SHARE.name,)
+        """The share of its level, and how that changes."""
+        return SHARE.name, SLOPE.name
 
     @property
     def keeps_energy(self) -> bool:

@@ -1,7 +1,7 @@
 """How much of what presses on walls and bodies each of their levels of sizes tells.
 
 Where walls and bodies are there on several levels, all fluid of a level pushes on its own, and of the push of
-a pair its share counts: of both particles the mean of the level's share at the face nearest to each.  Shares
+a pair the level's share counts at the face nearest to the fluid, half the way along that to the wall.  Shares
 of all levels add up to one and pass into each other within some spacings about a border.  Were instead each
 bit of fluid that leads to push, a border along a face would cut off rows that bear a part of the pressure
 each, and those of another spacing bear other parts: a row in front of a face it would press by an eighth too
@@ -15,7 +15,7 @@ from psph.particles.neighbours import Neighbours
 from psph.physics.motion import is_rigid
 from psph.physics.rigid.pose import PLACE
 from psph.scene.forms.make import form_of
-from psph.scene.levels import SHARE, Levels
+from psph.scene.levels import SHARE, SLOPE, Levels
 from psph.scene.shapes import bounds
 from psph.work import Rank
 
@@ -58,8 +58,8 @@ class FaceShares:
             self.places = self._maps[:, PLACE].copy()
 
     def tell(self, lists: Neighbours) -> np.ndarray:
-        """Write the shares of walls and bodies whose push is asked for, and of the fluid that sees them in
-        ``lists``; who of the owned particles has any (owned,)."""
+        """Write the shares of the fluid that ``lists`` name beside walls and bodies whose push is asked for;
+        who of it, and who of these by the faces that they have, is told of (owned,)."""
         store, layout, levels = self._store, self._layout, self._levels
         groups, beside = self._domain.groups(), np.zeros(store.owned, bool)
         find_beside(store.owned, store.low, lists, self._loaded[groups], beside)
@@ -71,21 +71,30 @@ class FaceShares:
         away = [np.abs(levels.outside(one, inside)) for one in range(1, levels.count)]
         near = np.flatnonzero(np.min(away, axis=0) < NEAR * layout.support + levels.band(1))
         face, least = where[near], np.full(len(near), np.inf)
+        normal = np.zeros(face.shape)
         of, flows = self._origin_of[group[rows[near]]], fluid[rows[near]]
         for number in self._faced:
             asked = np.flatnonzero(flows | (of == number))
-            away, points = self._nearest(number, where[near[asked]])
+            away, points, ways = self._nearest(number, where[near[asked]])
             nearer = away < least[asked]
-            least[asked[nearer]], face[asked[nearer]] = away[nearer], points[nearer]
+            taken = asked[nearer]
+            least[taken], face[taken], normal[taken] = away[nearer], points[nearer], ways[nearer]
         where[near] = face
-        share = store[SHARE.name][store.inner]
-        share[:] = 0.0
-        share[rows] = levels.shares(level, self._domain.inside(where))
-        return share > 0.0
+        found, slope = levels.shares(level, self._domain.inside(where))
+        across = sum(slope[near, d] * normal[:, d] for d in range(store.dimensions))
+        slope[near] -= across[:, None] * normal
+        flows = fluid[rows]
+        share, along = store[SHARE.name][store.inner], [x[store.inner] for x in store[SLOPE.name]]
+        for array, values in zip((share, *along), (found, *slope.T)):
+            array[:] = 0.0
+            array[rows[flows]] = values[flows]
+        told = np.zeros(store.owned, bool)
+        told[rows] = (found > 0.0) | slope.any(axis=1)
+        return told
 
-    def _nearest(self, number: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """How far some ``points`` (n, dim), m, are from the nearest face of a part of the layout (n,), and
-        where that is (n, dim)."""
+    def _nearest(self, number: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """How far some ``points`` (n, dim), m, are from the nearest face of a part of the layout (n,), where
+        that is, and its unit normal (n, dim)."""
         layout, row = self._layout, self._pose_of[number]
         shape, lower, upper = layout.parts[number].shape, np.array(layout.lower), np.array(layout.upper)
         start = points.copy()
@@ -98,8 +107,9 @@ class FaceShares:
             start = _by(start - place[:, 0], place[:, 1:])
         room = lower + WITHIN * layout.spacing, upper - WITHIN * layout.spacing
         faces = form_of(shape).endless(lower, upper, layout.periods).faces(start, room)
-        way = np.where(np.isfinite(faces.away), -faces.away, 0.0)[:, None] * faces.normal
-        return np.abs(faces.away), points + (_by(way, self.places[row][:, 1:].T) if row >= 0 else way)
+        normal = _by(faces.normal, self.places[row][:, 1:].T) if row >= 0 else faces.normal
+        way = np.where(np.isfinite(faces.away), -faces.away, 0.0)
+        return np.abs(faces.away), points + way[:, None] * normal, normal
 
 
 def _by(vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:
