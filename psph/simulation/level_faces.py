@@ -10,11 +10,15 @@ much.
 
 import numpy as np
 
+from psph.composition.reflections import BELOW
 from psph.particles.level_lists import find_beside
 from psph.particles.neighbours import Neighbours
 from psph.physics.motion import is_rigid
 from psph.physics.rigid.pose import PLACE
+from psph.scene.forms.form import Form, Room
+from psph.scene.forms.joined import Union
 from psph.scene.forms.make import form_of
+from psph.scene.forms.placed import Map, Moved
 from psph.scene.levels import SHARE, SLOPE, Levels
 from psph.scene.shapes import bounds
 from psph.work import Rank
@@ -25,6 +29,9 @@ particle sees or is behind."""
 
 WITHIN = 1e-3
 """Spacings from the ends of the domain within which a wall has no face: it goes on there."""
+
+FAR = 1e9
+"""A place beyond all faces, m."""
 
 
 class FaceShares:
@@ -45,6 +52,7 @@ class FaceShares:
         self._origin_of, self._fluid_of = np.array(origins), np.array([one.is_fluid for one in species])
         self._loaded = materials.loaded
         self._faced = [] if self._loaded is None else np.unique(self._origin_of[self._loaded])
+        self._forms = {int(number): self._form(int(number)) for number in self._faced}
         self._maps: np.ndarray | None = None
         self.places = np.zeros((0, 0, 0))
 
@@ -96,20 +104,42 @@ class FaceShares:
         """How far some ``points`` (n, dim), m, are from the nearest face of a part of the layout (n,), where
         that is, and its unit normal (n, dim)."""
         layout, row = self._layout, self._pose_of[number]
-        shape, lower, upper = layout.parts[number].shape, np.array(layout.lower), np.array(layout.upper)
         start = points.copy()
         if row >= 0:
             place = self.places[row]
-            middle = place[:, 0] + place[:, 1:] @ (0.5 * np.sum(bounds(shape), axis=0))
+            middle = place[:, 0] + place[:, 1:] @ (0.5 * np.sum(bounds(layout.parts[number].shape), axis=0))
             for d, period in enumerate(layout.periods):
                 if period is not None:
                     start[:, d] -= period * np.rint((start[:, d] - middle[d]) / period)
             start = _by(start - place[:, 0], place[:, 1:])
-        room = lower + WITHIN * layout.spacing, upper - WITHIN * layout.spacing
-        faces = form_of(shape).endless(lower, upper, layout.periods).faces(start, room)
+        faces = self._forms[number].faces(start, self._room(row >= 0))
         normal = _by(faces.normal, self.places[row][:, 1:].T) if row >= 0 else faces.normal
         way = np.where(np.isfinite(faces.away), -faces.away, 0.0)
         return np.abs(faces.away), points + way[:, None] * normal, normal
+
+    def _form(self, number: int) -> Form:
+        """A part of the layout as it was drawn; one that rests among its images a period away."""
+        layout = self._layout
+        ends, still = (np.array(layout.lower), np.array(layout.upper)), Map.none(layout.dimensions)
+        form = form_of(layout.parts[number].shape).endless(*ends, layout.periods)
+        if self._pose_of[number] >= 0:
+            return form
+        for step, period in zip(np.eye(layout.dimensions), layout.periods):
+            if period is not None:
+                form = Union([Moved(form, still._replace(shift=k * period * step)) for k in (-1, 0, 1)])
+        return form
+
+    def _room(self, moves: bool) -> Room:
+        """Where a wall has faces, or one that ``moves`` as it was drawn: within mirrors, and if it rests
+        within the open ends of the domain."""
+        layout, within = self._layout, WITHIN * self._layout.spacing
+        room = np.full((2, layout.dimensions), ((-FAR,), (FAR,)))
+        for d, period in enumerate(layout.periods):
+            if period is None and not moves:
+                room[:, d] = layout.lower[d] + within, layout.upper[d] - within
+        for plane in layout.mirror_planes:
+            room[int(plane.side != BELOW), plane.axis] = plane.at - plane.side * within
+        return room[0], room[1]
 
 
 def _by(vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:

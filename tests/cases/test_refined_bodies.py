@@ -13,7 +13,7 @@ from psph.case import load
 from psph.output.gauges import gauges_of
 from psph.scene import Scene
 from psph.scene.levels import SHARE, SLOPE
-from psph.simulation import levels
+from psph.simulation import level_faces, levels
 from psph.simulation.level_faces import FaceShares
 
 BOX = """
@@ -182,6 +182,43 @@ def test_a_plate_with_a_border_along_it_has_the_push_of_both_sides(lower, upper,
     wanted = np.array([0.0, width * height])
     one_side = max(height * (0.64 - 0.5 * (lowest + highest)[1]), width * (0.64 - lowest[1]))
     assert np.abs(force - wanted).max() < 0.01 * one_side
+
+
+ROUND = """
+time.end = 0.4
+[space]
+dimensions = 2
+spacing = 0.04
+periodic = ["x"]
+lower = [0.0, -0.16]
+upper = [1.2, 1.0]
+refine = [{ shape.box = { lower = [-0.1, 0.4], upper = [1.3, 1.0] } }]
+[physics]
+gravity = [0.0, -9.81]
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.2, 0.8] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.28], upper = [0.32, 0.52] } }]
+pressure = "hydrostatic"
+[walls.floor]
+shape.box = { lower = [0.0, -0.16], upper = [1.2, 0.0] }
+[walls.block]
+shape.box = { lower = [0.0, 0.28], upper = [0.32, 0.52] }
+[gauges.push.force]
+on = ["block"]
+"""
+"""A block of 0.32 by 0.24 m with one side at the end of a period, where water is before it."""
+
+
+def test_water_lifts_a_block_by_its_weight_at_the_end_of_a_period(tmp_path):
+    force_x, force_y, _ = lift(tmp_path, "", ROUND)
+    assert abs(force_y - 0.75) < 0.003 and abs(force_x) < 0.002
+
+
+def test_a_side_at_the_end_of_a_period_that_is_no_face_has_wrong_shares(tmp_path, monkeypatch):
+    """The control: as at the open ends of a domain, where a wall goes on."""
+    monkeypatch.setattr(FaceShares, "_room", lambda found, moves: (np.full(2, 1e-4), np.array([1.2, 1.0])))
+    monkeypatch.setattr(level_faces, "Union", lambda images: images[1].of)
+    assert abs(lift(tmp_path, "", ROUND)[1] - 0.75) > 0.01
 
 
 @pytest.mark.parametrize("spin", [0.0, 4.0])

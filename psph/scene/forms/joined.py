@@ -70,7 +70,8 @@ class Union(Together):
         if len(within):
             real = []
             for number, (own, part) in enumerate(zip(self.parts, found)):
-                step = BESIDE * max(up - low for low, up in zip(*own.bounds))
+                wide = np.subtract(*own.bounds[::-1])
+                step = BESIDE * np.max(wide, where=np.isfinite(wide), initial=0.0)
                 away = np.where(part.away[within] > 0.0, -np.inf, part.away[within])
                 here = np.flatnonzero(np.isfinite(away))
                 there = part.normal[within[here]] * (step - away[here, None])
