@@ -40,7 +40,7 @@ class Straying:
     stay, nobody looks at that again before a bound by the last look asks for it.  No particle is more than
     ``farthest`` m from where it was listed.  By ``growth`` (owned,) a smoothing length may be larger than
     then for lists to hold.  Where sizes say so, the skin is as wide as pays by how long the last lists have
-    served.  The same on every rank.
+    served, and half-way between its bounds at first.  The same on every rank.
     """
 
     def __init__(self, domain: Domain, sizes: Sizes, together: bool):
@@ -52,6 +52,7 @@ class Straying:
         self._served, self._bounds = 0, None  # there are no lists yet
         if sizes.least is not None:
             self._bounds = Bounds(sizes.least, sizes.skin, 1.0, domain.store.dimensions, 1, sizes.dear)
+            self._take((sizes.least * sizes.skin) ** 0.5)
 
     @property
     def farthest(self) -> float:

@@ -6,8 +6,15 @@ from cases.test_refined import begun, stream, together
 from mpi4py import MPI
 from parallel.test_simulation import state
 
+from psph.matter import refinement
 from psph.matter.refinement import LEAST_SKIN, SKINS
 from psph.parallel.straying import Straying
+
+
+@pytest.fixture
+def wide(monkeypatch):
+    """Lists stay as wide as they may be."""
+    monkeypatch.setattr(refinement, "LEAST_SKIN", SKINS[2])
 
 
 def long_wave(folder):
@@ -39,7 +46,7 @@ def shorn(case, steps, comm=MPI.COMM_SELF, speed=1.0):
     return simulation, made, looks
 
 
-def test_fewer_looks_and_the_same_lists(tmp_path, monkeypatch):
+def test_fewer_looks_and_the_same_lists(tmp_path, monkeypatch, wide):
     few, made, looks = shorn(long_wave(tmp_path), 40)
     monkeypatch.setattr(Straying, "_bound", lambda self, look: np.inf)
     many, as_before, each_step = shorn(long_wave(tmp_path), 40)
@@ -61,7 +68,7 @@ def test_a_bound_is_no_less_than_what_a_look_finds(tmp_path, monkeypatch):
         assert straying._bound(look) > found > 0.5 * look.apart
 
 
-def test_who_goes_on_looks_again_and_has_the_same_lists(tmp_path):
+def test_who_goes_on_looks_again_and_has_the_same_lists(tmp_path, wide):
     """From a checkpoint nobody knows of the last look."""
     case = long_wave(tmp_path)
     whole, _, _ = shorn(case, 45)
