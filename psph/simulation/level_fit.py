@@ -36,19 +36,26 @@ would keep 0.93 of its energy there, not 0.95."""
 FIRST = 0.6, 0.85
 """Σ V W between which linear terms of the velocity fade into its mean.  A row at a floor or a surface that
 goes faster than the next is otherwise followed by one that goes faster still: in still water 0.4 m deep that
-grows from 1 mm/s to 30 mm/s in two seconds.  Pressures keep theirs: a mean is that of another depth."""
+grows from 1 mm/s to 30 mm/s in two seconds.  Pressures keep theirs: a mean is that of another depth.
+Beside a wall the velocity across it is that of a fit to fluid and wall: were it a mean of the fluid too,
+water would not make way for a body that comes."""
+
+NO_SIDE = 1e-6
+"""Square of the mean way to walls, in spacings, below which they are on no side."""
 
 ORDER = 2
 """Of the fit."""
 
 
 class Leaders(NamedTuple):
-    """Who is seen: rows of the ``own`` level and of ``others``, of the particles from column ``low`` on; the
-    smoothing ``length`` of each, m, and its ``position``, m, where it was listed (columns,)."""
+    """Who is seen: rows of the ``own`` level, of ``others`` and of ``walls`` beside them, of the particles
+    from column ``low`` on; the smoothing ``length`` of each, m, and its ``position``, m, where it was listed
+    (columns,)."""
 
     low: int
     own: Any
     others: Any
+    walls: Any
     length: np.ndarray
     position: Any
 
@@ -66,14 +73,19 @@ class Weighed(NamedTuple):
 
 class Followed(NamedTuple):
     """Whom each of some particles follows: from ``begin`` (n,) on the entries that the first image in mirrors
-    shows, ``many`` (n, images), then those of the next; the ``column`` of each entry, its ``share`` c in
-    pressure and density and its share in the ``flow``.  ``longest`` is the longest row."""
+    shows, ``many`` (n, images), then those of the next; behind them on those of walls, ``beside``
+    (n, images); the ``column`` of each entry, its ``share`` c in pressure and density, its share in the
+    ``flow`` and in that ``across`` walls, along the unit vector ``normal`` (n, dim).  ``longest`` is the
+    longest row."""
 
     begin: np.ndarray
     many: np.ndarray
+    beside: np.ndarray
+    normal: np.ndarray
     column: np.ndarray
     share: np.ndarray
     flow: np.ndarray
+    across: np.ndarray
     longest: int
 
 
@@ -172,6 +184,43 @@ def find(k, spacing, leaders, images, weighing, room, followed, n):
     for entry in range(many):
         mean = room.weight[0, entry] / total
         flow[entry] = linear * share[entry] + (1.0 - linear) * mean
+    followed.beside[n] = 0
+    if linear < 1.0 and weighing.order > 0:
+        look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many)
+
+
+@helper
+def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many):
+    """Put those of walls behind the ``many`` entries of ``k``, and find the shares of both in the flow across
+    the walls; none where these are all around."""
+    dim, begin, found = len(leaders.position), followed.begin[n], many
+    column, across = followed.column[begin:], followed.across[begin:]
+    for m in range(len(images.turn[0])):
+        before = found
+        if is_near(images, m, at(leaders.position, k)):
+            found = take_row(k, spacing, leaders, leaders.walls, images, m, weighing, room, column, found)
+        followed.beside[n, m] = found - before
+    size = 0.0
+    for d in range(dim):
+        way = 0.0
+        for entry in range(many, found):
+            way += room.weight[0, entry] * room.terms[1 + d, entry]
+        followed.normal[n, d] = way
+        size += way * way
+    if size <= NO_SIDE * room.weight[0, many:found].sum() ** 2:
+        followed.beside[n] = 0
+        return
+    for d in range(dim):
+        followed.normal[n, d] /= np.sqrt(size)
+    sum_products(dim, room, found)
+    total = room.square[0, 0]
+    factor(room.square, FLAT)
+    set_shares(dim, total, room)
+    across[:found] = 0.0
+    for one in range(len(room.share)):
+        of = room.share[one]
+        for entry in range(found):
+            across[entry] += of * room.weight[one, entry]
 
 
 @helper
@@ -264,3 +313,24 @@ def take_after(k, followed, n, leaders, images, rows, state, led):
     density += (pressure - seen) * rows.softness
     state.density[k], state.volume[k], state.pressure[k] = density, 1.0 / density, pressure
     put(state.velocity, k, velocity)
+    if followed.beside[n].sum():
+        across_walls(k, followed, n, images, state)
+
+
+@helper
+def across_walls(k, followed, n, images, state):
+    """The velocity of column ``k`` across the walls beside row ``n`` becomes that between fluid and these."""
+    first, speed = followed.begin[n], 0.0
+    for lot in (followed.many, followed.beside):
+        for m in range(len(images.turn[0])):
+            last = first + lot[n, m]
+            for entry in range(first, last):
+                j, share = followed.column[entry], followed.across[entry]
+                for d in range(len(state.velocity)):
+                    seen = images.turn_velocity[d][m] * state.predicted[d][j] + images.shift_velocity[d][m]
+                    speed += share * followed.normal[n, d] * seen
+            first = last
+    for d in range(len(state.velocity)):
+        speed -= followed.normal[n, d] * state.velocity[d][k]
+    for d in range(len(state.velocity)):
+        state.velocity[d][k] += followed.normal[n, d] * speed

@@ -183,6 +183,8 @@ class Resizing(Work):
             pushing = rows_that_name(*everyone, self._loaded[group], True, self._lanes)
             self._loops.push_by(pushing, self._mirrors)
         alike = rows_that_name(*rows, follows, True, 1)
+        solid = lists, store.low, store.owned, Membership(level, ~fluid)
+        walls = rows_that_name(*solid, follows, True, 1)
         beside, inner = np.zeros(store.owned, bool), group[store.inner]
         find_beside(store.owned, store.low, lists, leads, beside)
         beside |= shares
@@ -197,18 +199,19 @@ class Resizing(Work):
         self.columns = store.low + own
         for row in (row for name in OF_FORCES for row in store.rows[name]):
             store.data[row, self.columns] = 0.0
-        self._leaders = Leaders(store.low, alike, others, store[LENGTH], listed)
+        self._leaders = Leaders(store.low, alike, others, walls, store[LENGTH], listed)
         where = np.stack([x[store.inner][own] for x in listed], axis=1)
         self._scale = self.levels.layout.spacing * 0.5 ** self._followed(where, level[self.columns])
         self._aside = self._steps_aside(where, level[self.columns])
-        seen = alike.lengths[own].astype(np.int64) + others.lengths[own]
+        seen = alike.lengths[own].astype(np.int64) + others.lengths[own] + walls.lengths[own]
         images = self._images(self._mirrors)
         seen *= images.shown_to(where)
-        begins, many = np.cumsum(seen) - seen, np.zeros((len(own), len(images.deeper)), np.int64)
+        begins, many = np.cumsum(seen) - seen, np.zeros((2, len(own), len(images.deeper)), np.int64)
+        normal = np.zeros((len(own), store.dimensions))
         size, longest = int(seen.sum()), int(seen.max(initial=0))
-        entries = np.empty(size, np.uint32), *np.empty((2, size))
+        entries = np.empty(size, np.uint32), *np.empty((3, size))
         self._sides = [
-            Side(some, one, Followed(begins[some], many[some], *entries, longest), every)
+            Side(some, one, Followed(begins[some], *many[:, some], normal[some], *entries, longest), every)
             for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
         ]
 

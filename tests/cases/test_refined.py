@@ -249,10 +249,11 @@ def swung(folder, off, periods=2):
 @LONG
 @pytest.mark.parametrize("off", [0.0, 0.02, 0.04])
 def test_a_wave_through_borders_at_its_nodes_keeps_what_one_spacing_keeps(off, tmp_path):
-    """One spacing of 0.08 m keeps 0.90, of 0.04 m 0.95; through borders 0.92 to 0.94 is left."""
+    """One spacing of 0.08 m keeps 0.90, of 0.04 m 0.95; through borders 0.93 to 0.95 is left.  Six of 600
+    coarse ones are the most that lead too little."""
     kept, strayed, _ = swung(tmp_path, off)
-    assert 0.905 < kept < 0.96
-    assert strayed < 0.01
+    assert 0.915 < kept < 0.96
+    assert strayed < 6.5 / 600.0
 
 
 @LONG
