@@ -66,6 +66,11 @@ class Space(Table):
     )
 
     @property
+    def finest(self) -> float:
+        """The smallest spacing of any region, m."""
+        return self.spacing / max((one.factor for one in self.refine), default=1)
+
+    @property
     def layers(self) -> int:
         """Rows of particles over which the kernel of one at a face reaches."""
         smooths: Any = KERNELS[self.kernel]

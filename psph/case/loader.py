@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 BARE_WORD = re.compile(r"[+-]?[A-Za-z][\w.-]*")
 PLACE_IN_LIST = re.compile(r"[0-9]{1,9}")
+IN_BRACKETS = re.compile(rf"\[({PLACE_IN_LIST.pattern})\]")
 HALF = re.compile("[\ud800-\udfff]")
 """Half a character: how Python shows bytes of the command line that are no UTF-8."""
 
@@ -239,10 +240,15 @@ def _of_a_table(what: str, above: list[str]) -> str:
     return f"{'.'.join(parts)} has keys above: add these there, written as those are"
 
 
+def parts_of(key: str) -> list[str]:
+    """The parts of a dotted key; ``[0]`` and ``.0`` are the same place in a list."""
+    return IN_BRACKETS.sub(r".\1", key.strip()).split(".")
+
+
 def _override(where: str, data: dict[str, Any], text: str) -> Override:
     """Set one key in ``data``."""
     path, equals, value = text.partition("=")
-    keys: list[str | int] = [*path.strip().split(".")]
+    keys: list[str | int] = [*parts_of(path)]
     if not equals or "" in keys or len(keys) > DEEPEST or HALF.search(text):
         raise CaseError([f"{where}: no key and value; write it as key.key=value"])
     table, made = data, None

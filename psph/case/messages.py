@@ -141,7 +141,8 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
         shown = f"{plain(value)}: " if isinstance(value, (str, int, float, list, tuple)) else ""
         return shown + details["msg"]
     if kind == "literal_error":
-        return f"{plain(value)} is not known; {advise(str(value), _words(schema, node or find(schema, loc)))}"
+        spelt = value if isinstance(value, str) else ""  # a number is like no other
+        return f"{plain(value)} is not known; {advise(spelt, _words(schema, node or find(schema, loc)))}"
     if kind in WANTED:
         return f"{plain(value)} is not {WANTED[kind]}; {_how_to_give(details, loc, schema)}"
     if kind in ("too_short", "too_long"):

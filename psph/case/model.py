@@ -22,6 +22,7 @@ from psph.case.motion import Motions, series_in
 from psph.case.numbers import NumberOf
 from psph.case.placed import Answering, Named, Placed
 from psph.case.profiles import OFF, choices
+from psph.case.refined import finer_of
 from psph.case.running import Checkpoint, GuardKeys, NeighbourLists, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import scheme_keys
 from psph.case.shapes import Shell
@@ -228,6 +229,7 @@ class Case(WithMatter):
         end, zeros = self.time.end, (0.0,) * self.space.dimensions
         _fill(self.space, origin=zeros)
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
+        self.space.__dict__["refine"] = finer_of(self.space.refine)  # all that reads a case has these alone
         deep = self.space.layers * self.space.spacing
         for one in (value for _, value in walk(self) if isinstance(value, Shell)):
             _fill(one, thickness=deep)

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import Literal
 
+from pydantic import PrivateAttr
+
 from psph.acts import FLUIDS
 from psph.case.findings import Finding, Location
 from psph.case.keys import AXES, SIDES, Name, Table, key
@@ -16,7 +18,9 @@ class Refined(Table):
     """A region whose fluid, walls and bodies have a finer spacing."""
 
     shape: Shape = key("the region")
-    factor: Literal[2, 4, 8] = key("how many times finer particles are there", 2, unit="1")
+    factor: Literal[1, 2, 4, 8] = key(
+        "how many times finer particles are there; 1: they are not, as without this region", 2, unit="1"
+    )
     moves_with: Name | None = key(
         "the moving wall or the body that carries the region along, as its middle goes; it does not turn",
         None,
@@ -28,6 +32,13 @@ class Refined(Table):
         otherwise="the region stays where it is",
     )
 
+    _number: int = PrivateAttr(0)
+
+    @property
+    def where(self) -> str:
+        """Its key, as a person finds it in the case."""
+        return f"space.refine[{self._number}]"
+
     @property
     def moves(self) -> bool:
         """Whether the region goes anywhere."""
@@ -37,6 +48,13 @@ class Refined(Table):
     def levels(self) -> int:
         """How many times the spacing is halved."""
         return self.factor.bit_length() - 1
+
+
+def finer_of(every: tuple[Refined, ...]) -> tuple[Refined, ...]:
+    """Those of a case's regions that have finer particles; each knows its number among all."""
+    for n, one in enumerate(every):
+        one._number = n
+    return tuple(one for one in every if one.levels)
 
 
 def refined(case) -> Iterator[Finding]:
@@ -51,7 +69,7 @@ def refined(case) -> Iterator[Finding]:
             yield (*where, "front"), one.front, f"no such axis in {case.space.dimensions}D"
         elif one.front and one.front[0] in case.space.periodic:
             yield (*where, "front"), one.front, "nothing is farthest along an axis that repeats; take another"
-    if case.space.refine:
+    if any(one.levels for one in case.space.refine):
         for loc, what in _unfit(case):
             yield loc, ..., f"does not work with space.refine yet: {what}; take one of the two out"
 

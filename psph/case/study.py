@@ -39,8 +39,8 @@ class Experiment(Table):
 
 Choices = Annotated[tuple[float | int | bool | Text, ...], Strict(False), Field(min_length=1)]
 
-Dotted = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*$")]
-"""A key as ``--set`` takes it."""
+Dotted = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+|\[[0-9]{1,9}\])*$")]
+"""A key as ``--set`` takes it, with places in lists as ``[0]`` or ``.0``."""
 
 
 class Study(Table):

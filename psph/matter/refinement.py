@@ -145,17 +145,17 @@ class Refinement(Kind):
     def faults(self) -> Iterator[str]:
         """Regions outside the domain, and those thinner than what is around them sees."""
         layout = self.scene.layout
-        for n, one in enumerate(layout.case.space.refine):
+        for one in layout.case.space.refine:
             lower, upper = bounds(one.shape)
             thin = min(high - low for low, high in zip(lower, upper))
             if thin < layout.support:
                 yield (
-                    f"space.refine[{n}].shape: {thin:.4g} m thick, less than the {layout.support:.4g} m that "
+                    f"{one.where}.shape: {thin:.4g} m thick, less than the {layout.support:.4g} m that "
                     "particles around it see; make it thicker, or give a smaller space.spacing to all"
                 )
             ends = zip(lower, upper, layout.lower, layout.upper)
             if any(high <= least or low >= most for low, high, least, most in ends):
-                yield f"space.refine[{n}].shape: outside the domain, where nothing is; move it into the fluid"
+                yield f"{one.where}.shape: outside the domain, where nothing is; move it into the fluid"
 
     def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What each level has, and how long its steps are."""

@@ -21,9 +21,10 @@ def level_faults(scene, name: str, end: OpenEnd) -> Iterator[str]:
         return
     region, away = levels.nearest(_places(scene, name, end))
     if away < levels.widest:
+        where = scene.case.space.refine[region].where
         yield (
             f"ends.{name}.at: {end.at:.4g} m: what stands behind its plane and within {SEEN:g} spacings in "
-            f"front comes within {max(away, 0.0):.3g} m of space.refine[{region}], around which finer "
+            f"front comes within {max(away, 0.0):.3g} m of {where}, around which finer "
             f"particles need {levels.widest:.3g} m; move the plane, or the region, by "
             f"{levels.widest - away:.3g} m"
         )

@@ -123,6 +123,17 @@ def test_an_override_reaches_into_a_list(tmp_path):
     assert case.perturbations[0].velocity == (2.0, 0.0)
 
 
+@pytest.mark.parametrize("key", ["perturbations[0].velocity", "perturbations.0.velocity"])
+def test_a_place_in_a_list_is_written_as_in_messages_or_with_a_dot(tmp_path, key):
+    text = WATER + "[[perturbations]]\nposition = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n"
+    case = draft(tmp_path, text, f"{key}=[2.0, 0.0]", f"{key}[1]=3.0")
+    assert case.perturbations[0].velocity == (2.0, 3.0)
+    [line] = refusal(tmp_path, text, f"{key}=[2.0]")
+    assert f"--set {key}=[2.0]: perturbations[0].velocity: [2.0]: 1 number" in line
+    [line] = refusal(tmp_path, text, "perturbations[1].velocity=[2.0, 0.0]")
+    assert "perturbations: has no [1] inside" in line
+
+
 def test_a_later_override_wins(tmp_path):
     assert draft(tmp_path, WATER, "time.end=3.0", "time.end=4.0").time.end == 4.0
 
