@@ -8,6 +8,7 @@ from mpi4py import MPI
 from psph.fields import FLUID, GAS
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
+from psph.scene.levels import LENGTH
 from psph.theory.solutions.catalogue import known
 from psph.theory.solutions.setting import Setting
 
@@ -34,24 +35,32 @@ class Accuracy:
         store = self.domain.store
         fluid = np.isin(store.owned_rows("kind"), (FLUID, GAS))
         x = self.domain.inside(store.owned_rows("position"))[fluid]
+        weight = self._weight()[fluid]
         errors: list[float] = []
         for field in self.fields:
             exact = getattr(self.solution, field)(x, time, self.setting)
             off = store.owned_rows(field)[fluid] - exact
             if field in self.solution.up_to_a_constant:
-                off, exact = off - self._mean(off), exact - self._mean(exact)
-            errors += norms(self.domain.comm, _size(off), _size(exact))
+                off, exact = off - self._mean(off, weight), exact - self._mean(exact, weight)
+            errors += norms(self.domain.comm, _size(off), _size(exact), weight)
         return errors
 
-    def _mean(self, values: np.ndarray) -> float:
-        ones = np.ones_like(values)
-        total, count = exact_sums(self.domain.comm, np.column_stack([values, ones]))
+    def _weight(self) -> np.ndarray:
+        """How much each particle counts: 1, or its volume in units of the coarsest where levels of sizes
+        differ."""
+        store = self.domain.store
+        if LENGTH not in store.rows:
+            return np.ones(store.owned)
+        return (store.owned_rows(LENGTH) / store.constants["smoothing_length"]) ** store.dimensions
+
+    def _mean(self, values: np.ndarray, weight: np.ndarray) -> float:
+        total, count = exact_sums(self.domain.comm, np.column_stack([values * weight, weight]))
         return total / count
 
 
-def norms(comm: MPI.Comm, error: np.ndarray, size: np.ndarray) -> Iterator[float]:
-    """The three norms of |e| over those of |f|, both (n,) of this rank; collective."""
-    sums = exact_sums(comm, np.column_stack([error, size, error**2, size**2]))
+def norms(comm: MPI.Comm, error: np.ndarray, size: np.ndarray, weight: np.ndarray) -> Iterator[float]:
+    """The three norms of |e| over those of |f|, both (n,) of this rank, by their ``weight``; collective."""
+    sums = exact_sums(comm, weight[:, None] * np.column_stack([error, size, error**2, size**2]))
     tops = largest(comm, [error.max(initial=0.0), size.max(initial=0.0)])
     with np.errstate(invalid="ignore", divide="ignore"):
         l1, l2 = np.divide(sums[0], sums[1]), np.sqrt(np.divide(sums[2], sums[3]))

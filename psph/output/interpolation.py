@@ -9,21 +9,22 @@ def interpolated(
     position: np.ndarray,
     values: np.ndarray,
     at: np.ndarray,
-    spacing: float,
+    spacing: float | np.ndarray,
     periods: Sequence[float | None],
 ) -> np.ndarray:
     """Values of particles at other places, averaged by the squares of (1 − r/2dx)₊.
 
-    ``position`` and ``at`` are (n, dim) in m, ``spacing`` is dx; r is the distance to the nearest
-    image, ``periods`` a length in m or None for each axis.  Where no particle is that near, the
-    nearest one's value.
+    ``position`` and ``at`` are (n, dim) in m, ``spacing`` is dx, or that of each particle (n,); r is
+    the distance to the nearest image, ``periods`` a length in m or None for each axis.  Where no
+    particle is that near, the nearest one's value.
     """
     from scipy.spatial import cKDTree
 
     lengths = np.array([period or 0.0 for period in periods])  # 0: the axis does not repeat
     tree = cKDTree(folded(position, lengths), boxsize=lengths)
-    distance, who = tree.query(at, k=4 ** position.shape[1], distance_upper_bound=2.0 * spacing)
-    share = np.maximum(1.0 - distance / (2.0 * spacing), 0.0) ** 2
+    reach = 2.0 * np.append(np.broadcast_to(spacing, len(position)), np.max(spacing))  # one more: nobody
+    distance, who = tree.query(at, k=4 ** position.shape[1], distance_upper_bound=reach[-1])
+    share = np.maximum(1.0 - distance / reach[who], 0.0) ** 2
     near = share.sum(axis=1) > 0.0
     padded = np.concatenate([values, values[:1]])  # where there are fewer, the share is zero
     share[near] /= share[near].sum(axis=1, keepdims=True)

@@ -4,9 +4,10 @@ import json
 from pathlib import Path
 
 from psph.lab.report.sheet import Result, first_run
+from psph.lab.study.conclusions import ladders_of
 from psph.lab.study.ladder import name_of
 from psph.lab.study.report import percent
-from psph.lab.study.study import KEPT, PAGE, PICTURE, ladders_of
+from psph.lab.study.study import KEPT, PAGE, PICTURE
 from psph.output.pictures.names import REPORT
 
 

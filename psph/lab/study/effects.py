@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterator
 
 from psph.case.profiles import OFF
+from psph.lab.study.conclusions import MEAN
 from psph.lab.study.ladder import Settings
 from psph.lab.study.report import percent
 from psph.lab.study.runs import DONE
-from psph.lab.study.study import MEAN
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.reading import words

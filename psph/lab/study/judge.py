@@ -1,6 +1,7 @@
 """Errors of a finished run: its files against an exact solution, an experiment or another run."""
 
 import math
+import tomllib
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +17,7 @@ from psph.lab.study.experiment import read_experiment
 from psph.lab.study.numbers import value_in, value_of
 from psph.output.accuracy import NORMS
 from psph.output.interpolation import interpolated
+from psph.output.pictures.once import once, reads_of
 from psph.output.reader import Run
 from psph.runs.record import columns_of
 from psph.scene import Scene
@@ -54,7 +56,7 @@ class Judge:
     @property
     def in_words(self) -> str:
         """``velocity at the end against the exact solution``."""
-        names = {EXACT: "the exact solution", THEORY: "theory", FINEST: "the finest run, its own error added"}
+        names = {EXACT: "the exact solution", THEORY: "theory", FINEST: "the finest run"}
         at = " at the end" if self.what in AT_THE_END else ""
         if number := self.case.numbers.get(self.what):
             at = f" ({number.take} of {number.of})"
@@ -99,15 +101,11 @@ class Judge:
         if self.against == EXACT:
             last = {name: values[-1] for name, values in run.errors().items()}
             return Judgement(*(float(last[f"{self.what}_{norm}"]) for norm in NORMS))
-        ours, theirs = (_fluid(r, self.what) for r in (run, Run(finest)))
         if run.folder == finest:
             return Judgement(math.nan, math.nan, math.nan)
-        there = interpolated(*theirs, ours[0], self._spacing(finest), Scene(self.case).layout.periods)
-        return series_errors(ours[1], there)
-
-    @staticmethod
-    def _spacing(folder: Path) -> float:
-        return float(Run(folder).attributes["spacing"])
+        (x, ours, width), (*theirs, of_theirs) = (_fluid(r, self.what) for r in (run, Run(finest)))
+        there = interpolated(*theirs, x, of_theirs, Scene(self.case).layout.periods)
+        return series_errors(ours, there, (width / width.max()) ** x.shape[1])
 
     def _curve(self, run: Run, finest: Path) -> tuple[Callable, np.ndarray | None]:
         """The reference as a function of times, and the times at which it was measured."""
@@ -268,8 +266,8 @@ SHIFTS = 50
 """Shifts on either side that are tried first."""
 
 
-def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:
-    """Relative errors of a curve or a field, (n,) or (n, dim), over its points.
+def series_errors(ours: np.ndarray, theirs: np.ndarray, weight: np.ndarray | float = 1.0) -> Judgement:
+    """Relative errors of a curve or a field, (n,) or (n, dim), over its points, each with its ``weight``.
 
     Σ|e|/Σ|f|, √(Σe²/Σf²) and max|e|/max|f|; NaN where there is none.
     """
@@ -277,12 +275,15 @@ def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:
         return Judgement(math.nan, math.nan, math.nan)
     e, f = (np.linalg.norm(x.reshape(len(x), -1), axis=1) for x in (ours - theirs, theirs))
     with np.errstate(invalid="ignore", divide="ignore"):
-        l2 = np.sqrt((e * e).sum() / (f * f).sum())
-        return Judgement(float(e.sum() / f.sum()), float(l2), float(e.max() / f.max()))
+        l2 = np.sqrt((weight * e * e).sum() / (weight * f * f).sum())
+        l1 = (weight * e).sum() / (weight * f).sum()
+        return Judgement(float(l1), float(l2), float(e.max() / f.max()))
 
 
-def _fluid(run: Run, field: str) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and values of the fluid, or gas, in the last frame."""
-    frame = run.frame(-1, "position", "kind", field)
+def _fluid(run: Run, field: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions and values of the fluid, or gas, in the last frame, and the spacing of each, m; a gas has
+    one."""
+    case = tomllib.loads(run.case_text)
+    frame = once(run.frame(-1, "position", field, *reads_of(case, saved=())), case)
     fluid = np.isin(frame["kind"], (FLUID, GAS))
-    return frame["position"][fluid], frame[field][fluid]
+    return frame["position"][fluid], frame[field][fluid], frame["width"][fluid]

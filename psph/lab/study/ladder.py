@@ -1,11 +1,12 @@
 """Which runs a study makes: keys of the case, and the values that each takes."""
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import tomli_w
 
-from psph.case.loader import Varied
+from psph.case.errors import dotted
+from psph.case.loader import Varied, parts_of
 from psph.case.profiles import OFF
 from psph.errors import LONGEST_QUOTE, shortened
 from psph.lab.errors import StudyError
@@ -23,7 +24,8 @@ Settings = dict[str, object]
 def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, list]:
     """The keys that vary and their values, from the case's table or from ``key=value,value``.
 
-    Raises StudyError where nothing varies, or a key has no second value.
+    A single ``off`` stands for with and without: the key as the case has it, and taken out.  Raises
+    StudyError where nothing varies, or a key has no second value.
     """
     vary = _all(given) if given else {key: list(values) for key, values in table.items()}
     if not vary:
@@ -32,6 +34,8 @@ def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, lis
             'vary = { "space.spacing" = [...] }, or --vary space.spacing=0.02,0.01'
         )
     for key, values in vary.items():
+        if values == [OFF]:
+            values.insert(0, None)
         if len(set(map(str, values))) < 2:
             raise StudyError(f"study: {key}: one value only, {values[0]}; give a second one")
         if len(set(map(str, values))) < len(values):
@@ -45,7 +49,7 @@ def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, lis
 def _all(given: Sequence[str]) -> dict[str, list]:
     read = list(map(_read, given))
     for key, _ in read:
-        if sum(key == other for other, _ in read) > 1:
+        if sum(parts_of(key) == parts_of(other) for other, _ in read) > 1:
             raise StudyError(f"study --vary {key}: given twice; give all of its values at once")
     return dict(read)
 
@@ -72,18 +76,30 @@ def rows(vary: Mapping[str, Sequence], grid: bool) -> list[Settings]:
 
     As a ``grid`` all combinations.  Else one key at a time: the spacings by themselves, and each
     other value at the finest spacing but one, where there are several, so that what it changes
-    can be told from what the spacing changes.
+    can be told from what the spacing changes.  A value None leaves the key as the case has it; keys
+    of a table that is off are left out.
     """
     ladder = sorted(vary.get(SPACING, ()), reverse=True)
     others = {key: values for key, values in vary.items() if key != SPACING}
     if grid:
         every = itertools.product(ladder or [None], *others.values())
-        found = [dict(zip((SPACING, *others), values)) for values in every]
-        return [{k: v for k, v in row.items() if v is not None} for row in found]
+        found = [_said(dict(zip((SPACING, *others), values))) for values in every]
+        return [row for n, row in enumerate(found) if row not in found[:n]]
     base = {SPACING: ladder[-2:][0]} if ladder else {}
     found = [{SPACING: dx} for dx in ladder] or [{}]
-    found += [{**base, key: v} for key, vs in others.items() for v in vs]
+    found += [{**base, key: v} for key, vs in others.items() for v in vs if v is not None]
     return found
+
+
+def _said(row: Settings) -> Settings:
+    """What of a row of a grid there is to say: no key of a table that is off."""
+    off = [parts_of(key) for key, value in row.items() if value == OFF]
+
+    def is_within(key: str) -> bool:
+        parts = parts_of(key)
+        return any(len(out) < len(parts) and parts[: len(out)] == out for out in off)
+
+    return {key: value for key, value in row.items() if value is not None and not is_within(key)}
 
 
 def overrides(settings: Settings) -> list[str]:
@@ -102,14 +118,19 @@ def toml(value) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def name_of(settings: Settings) -> str:
-    """The name of a run: ``spacing 0.01, kernel wendland-c4``."""
-    return ", ".join(f"{short(key)} {toml(value)}" for key, value in settings.items()) or "as it is"
+def name_of(settings: Settings, among: Iterable[str] = ()) -> str:
+    """The name of a run: ``spacing 0.01, kernel wendland-c4``; ``among`` are all keys that vary."""
+    return ", ".join(f"{short(key, among)} {toml(value)}" for key, value in settings.items()) or "as it is"
 
 
-def short(key: str) -> str:
-    """The last part of a key, in words."""
-    return key.rpartition(".")[2].replace("_", " ")
+def short(key: str, among: Iterable[str] = ()) -> str:
+    """The last part of a key, in words; as many as tell it from others, ``among`` which it is."""
+    parts, others = parts_of(key), [parts_of(other) for other in among]
+    for begin in reversed(range(len(parts))):
+        own = parts[begin:]
+        if not own[0].isdigit() and not any(other != parts and other[-len(own) :] == own for other in others):
+            break
+    return dotted(int(part) if part.isdigit() else part for part in own).replace("_", " ")
 
 
 def groups(every: Sequence[Settings]) -> Iterator[tuple[Settings, list[int]]]:

@@ -16,7 +16,8 @@ NUMBER, REACH = "number ", "reach "
 
 class NumberLadder(NamedTuple):
     """A number ``name``, what it is ``of``, over spacings, m, the coarsest first, with its ``values``,
-    ``reaches``, its ``unit`` and the ``limit`` at zero spacing; None: there is no answer, and ``why``."""
+    ``reaches``, its ``unit``, the ``theory`` of it if any, and the ``limit`` at zero spacing; None: there is
+    no answer, and ``why``."""
 
     name: str
     of: str
@@ -24,6 +25,7 @@ class NumberLadder(NamedTuple):
     spacings: tuple[float, ...]
     values: tuple[float, ...]
     reaches: tuple[float, ...]
+    theory: float | None
     limit: fit.Extrapolated | None
     why: str
 
@@ -69,7 +71,7 @@ def ladders_of_numbers(case, rows: Sequence[Mapping]) -> Iterator[NumberLadder]:
         limit, why = _limit(spacings, values, len(rows) - len(known))
         unit = unit_taken(asked, case.space.dimensions)
         of = f"{asked.take} of {asked.of}"
-        yield NumberLadder(name, of, unit, spacings, values, reaches, limit, why)
+        yield NumberLadder(name, of, unit, spacings, values, reaches, asked.theory, limit, why)
 
 
 def _limit(spacings, values, without: int) -> tuple[fit.Extrapolated | None, str]:

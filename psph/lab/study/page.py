@@ -10,11 +10,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from psph.case.profiles import OFF, PROFILES
+from psph.lab.study.conclusions import ladders_of
 from psph.lab.study.fit import Ladder
 from psph.lab.study.ladder import PROFILE, SPACING, toml
 from psph.lab.study.report import percent, seconds
 from psph.lab.study.runs import DONE
-from psph.lab.study.study import KEPT, PICTURE, ladders_of
+from psph.lab.study.study import KEPT, PICTURE
 from psph.lab.study.words import within
 from psph.output.pages import command, picture, results
 

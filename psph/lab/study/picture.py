@@ -3,13 +3,19 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import Locator, LogLocator, MaxNLocator, NullLocator
 
+from psph.lab.study.fit import Estimate
 from psph.lab.study.ladder import SPACING, toml
+from psph.lab.study.numbers import NumberLadder
 from psph.output.pictures import style
 
 WIDTH, HEIGHT = 6.4, 4.0
 """Of the diagram, inches."""
+
+LABELLED = 12
+"""Points up to which all have their spacing written beside them; of more those of the first curve."""
 
 
 def draw(
@@ -33,21 +39,14 @@ def draw(
         if len(front) > 1:
             x, y = zip(*((r["seconds"], 100.0 * r["error_l2"]) for r in front))
             axes.plot(x, y, color=style.WALLS, lw=6, solid_capstyle="round", zorder=1, label="best choices")
+        few = sum(len(rows) for _, rows in curves) <= LABELLED
         for k, (name, rows) in enumerate(curves):
             colour = style.LINES[k % len(style.LINES)]
             x = [r["seconds"] for r in rows]
             y = [100.0 * r["error_l2"] for r in rows]
             axes.plot(x, y, "o-", color=colour, ms=4, label=name, zorder=3)
-            for row in rows if k == 0 else ():
-                if SPACING in row:
-                    axes.annotate(
-                        f"dx {toml(row[SPACING])}",
-                        (row["seconds"], 100.0 * row["error_l2"]),
-                        xytext=(5, 5),
-                        textcoords="offset points",
-                        size=8,
-                        color=style.PALE,
-                    )
+            for row in rows if few or k == 0 else ():
+                _label(axes, row, colour if few and len(curves) > 1 else style.PALE, below=k % 2 == 1)
         if goal:
             error, row = goal
             axes.axhline(100.0 * error, color=style.INK, lw=0.9, ls=(0, (5, 3)), zorder=2)
@@ -73,27 +72,56 @@ def draw(
     return style.save(figure, path)
 
 
-def draw_number(path: Path, title: str, found) -> Path:
+def draw_number(path: Path, title: str, ladders: Sequence[tuple[str, NumberLadder]]) -> Path:
     """Write the values of a number over the spacing, with bars for their reach, and its limit at zero spacing
-    with its interval (psph.lab.study.numbers.NumberLadder)."""
+    with its interval; of several ``ladders`` each has a name."""
+    (_, first), several = ladders[0], len(ladders) > 1
+    theory, legend = first.theory, several or first.theory is not None
+    right, top = 2.2 if legend else style.RIGHT, style.TOP + 0.2
     with style.look():
-        figure = style.sheet(
-            style.LEFT + WIDTH + style.RIGHT, style.TOP + HEIGHT + style.BOTTOM, title, found.of
-        )
-        axes = style.panel(figure, style.LEFT, style.TOP, WIDTH, HEIGHT)
-        bars = [0.0 if reach != reach else reach for reach in found.reaches]
-        axes.errorbar(found.spacings, found.values, bars, fmt="o-", ms=4, capsize=3, color=style.LINES[0])
-        if found.limit:
-            value = found.limit.value
-            known = value.high == value.high
-            reach = [[value.value - value.low], [value.high - value.value]] if known else None
-            axes.errorbar([0.0], [value.value], reach, fmt="D", ms=5, capsize=3, color=style.LINES[1])
-        axes.set_xlim(left=-0.03 * max(found.spacings))
+        figure = style.sheet(style.LEFT + WIDTH + right, top + HEIGHT + style.BOTTOM, title, first.of)
+        axes = style.panel(figure, style.LEFT, top, WIDTH, HEIGHT)
+        if theory is not None:
+            axes.axhline(theory, color=style.INK, lw=0.9, ls=(0, (5, 3)), zorder=1, label="theory")
+        for k, (name, found) in enumerate(ladders):
+            colour = style.LINES[k % len(style.LINES)]
+            bars = [0.0 if reach != reach else reach for reach in found.reaches]
+            axes.errorbar(
+                found.spacings, found.values, bars, fmt="o-", ms=4, capsize=3, color=colour, label=name
+            )
+            if found.limit:
+                _limit(axes, found.limit.value, colour if several else style.LINES[1])
+        axes.set_xlim(left=-0.03 * max(max(found.spacings) for _, found in ladders))
         axes.margins(y=0.12)
         axes.grid(color=style.WALLS, lw=0.4)
         axes.set_xlabel("spacing (m); the limit at 0")
-        axes.set_title(f"{found.name} ({found.unit})", loc="left", size=9, weight="bold")
+        axes.set_title(f"{first.name} ({first.unit})", loc="left", size=9, weight="bold")
+        if legend:
+            axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0))
     return style.save(figure, path)
+
+
+def _limit(axes, value: Estimate, colour: str) -> None:
+    """A limit at zero spacing, with its interval where that is known."""
+    known = value.high == value.high
+    reach = [[value.value - value.low], [value.high - value.value]] if known else None
+    axes.errorbar([0.0], [value.value], reach, fmt="D", ms=5, capsize=3, color=colour)
+
+
+def _label(axes, row: dict, colour: str, below: bool) -> None:
+    """The spacing of a run beside its point, above or ``below``."""
+    if SPACING not in row:
+        return
+    text = axes.annotate(
+        f"dx {toml(row[SPACING])}",
+        (row["seconds"], 100.0 * row["error_l2"]),
+        xytext=(5, -11 if below else 5),
+        textcoords="offset points",
+        size=8,
+        color=colour,
+        zorder=5,
+    )
+    text.set_path_effects([withStroke(linewidth=3, foreground="white")])
 
 
 def _numbers(low: float, high: float) -> Locator:

@@ -8,10 +8,11 @@ from pathlib import Path
 from psph.errors import LONGEST_QUOTE, one_line, shortened, typed
 from psph.lab.errors import StudyError
 from psph.lab.study import report, words
+from psph.lab.study.conclusions import ladders_of
 from psph.lab.study.fit import Ladder
 from psph.lab.study.ladder import SPACING, name_of, toml
 from psph.lab.study.runs import DONE, conditions
-from psph.lab.study.study import KEPT, ladders_of
+from psph.lab.study.study import KEPT
 
 MEASURED = (SPACING, "seconds", "particles", "steps")
 

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from psph.lab.study.ladder import toml
+from psph.lab.study.ladder import SPACING, toml
 from psph.output.errors import OutputError
 from psph.output.progress import duration
 
@@ -20,6 +20,9 @@ SHOWN = (
     ("status", "status"),
 )
 """The main columns of a row, shown in tables."""
+
+FINEST_SPACING = "finest_spacing"
+"""Column of a row: the smallest spacing of any of its regions, m; shown where some are finer."""
 
 
 def write_csv(path: Path, rows: Sequence[dict]) -> None:
@@ -49,10 +52,12 @@ def write_json(path: Path, study: dict) -> None:
 
 def table(rows: Sequence[dict], keys: Sequence[str]) -> tuple[list[str], list[list[str]]]:
     """Head and body in words: the keys that vary, then the main columns."""
-    head = [*keys, *(title for _, title in SHOWN)]
+    finer = any(FINEST_SPACING in row and row[FINEST_SPACING] < row[SPACING] for row in rows)
+    shown = (*(((FINEST_SPACING, "finest (m)"),) if finer else ()), *SHOWN)
+    head = [*keys, *(title for _, title in shown)]
     return head, [
         [toml(row[key]) if key in row else "" for key in keys]
-        + [_cell(name, row.get(name), row) for name, _ in SHOWN]
+        + [_cell(name, row.get(name), row) for name, _ in shown]
         for row in rows
     ]
 
@@ -82,7 +87,7 @@ def _cell(name: str, value, row: dict) -> str:
     if name == "seconds":
         spread = row.get("seconds_spread")
         return f"{value:.3g}" + (f" ± {50 * spread:.0f} %" if spread else "")
-    if name == "particle_steps":
+    if name in ("particle_steps", FINEST_SPACING):
         return f"{value:.3g}"
     if name == "bytes":
         return f"{value / 2**20:.3g} MiB"

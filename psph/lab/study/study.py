@@ -7,17 +7,20 @@ from pathlib import Path
 from psph.case import Case, CaseError, load
 from psph.case.profiles import OFF, choices
 from psph.lab.errors import StudyError
-from psph.lab.study import fit, report, words
+from psph.lab.study import fit, report
 from psph.lab.study.answer import answers
+from psph.lab.study.conclusions import DIFFERENCE, MEAN, SPREAD, Conclusions, pareto
 from psph.lab.study.judge import FINEST, Judge, Judgement, known_values, window
 from psph.lab.study.ladder import PROFILE, SPACING, Settings, groups, name_of
-from psph.lab.study.numbers import NumberLadder, columns_of_numbers, ladders_of_numbers, sentences_of_numbers
+from psph.lab.study.numbers import NumberLadder, columns_of_numbers
 from psph.lab.study.picture import draw, draw_number
 from psph.lab.study.runs import DONE, Make, cases, conditions, perform
 from psph.output.reader import Run as Folder
+from psph.runs.forecast import forecast
 from psph.runs.memory_check import check_size
 from psph.scene import Scene, check
 from psph.scene.checks import warnings
+from psph.simulation.plan import make_plan
 
 CSV, PAGE, PICTURE, KEPT = "study.csv", "study.md", "study.png", "study.json"
 PICTURE_OF = "study.{}.png"
@@ -51,6 +54,7 @@ class StudyRuns:
         self.keys = list(dict.fromkeys(key for settings in every for key in settings))
         self.cases = cases(file, sets, every, make)
         self.own_errors: dict[str, fit.OwnError | None] = {}
+        self.reference: int | None = None
         self._merge()
 
     def _merge(self) -> None:
@@ -67,10 +71,11 @@ class StudyRuns:
             with_it = [case for case, s in zip(self.cases, self.every) if key in s]
             if with_it and all(isinstance(case, CaseError) for case in with_it):
                 raise with_it[0]
-        if self.judge.against == FINEST and len({s.get(SPACING) for s in self.every}) < 2:
+        sizes = {case.space.finest for case in self.cases if not isinstance(case, CaseError)}
+        if self.judge.against == FINEST and len(sizes) < 2:
             raise StudyError(
                 f"{self.case.file}: study: no reference, and no finer run to compare with; give "
-                "[exact], an experiment, a probe's theory, or two values of space.spacing"
+                "[exact], an experiment, theory of a probe or a number, or two values of space.spacing"
             )
 
     def run(self, say: Callable[[str], None]) -> list[dict]:
@@ -79,7 +84,7 @@ class StudyRuns:
         for line in self._warnings():
             say(f"warning: {line}")
         for k, (settings, case) in enumerate(zip(self.every, self.cases)):
-            title = f"run {k + 1} of {len(self.every)}: {name_of(settings)}"
+            title = f"run {k + 1} of {len(self.every)}: {name_of(settings, self.keys)}"
             say(f"{title} ...{self._left(results, k)}")
             result = perform(case, self.folder / f"run-{k + 1:02d}", self.comm, self.case.study.repeats, say)
             results.append(result)
@@ -89,30 +94,36 @@ class StudyRuns:
     def _warnings(self) -> Iterator[str]:
         """What `check` says at each spacing: walls may be too thin at one of them, or widths no multiple."""
         loaded = [case for case in self.cases if not isinstance(case, CaseError)]
-        for dx, case in {case.space.spacing: case for case in loaded}.items():
-            yield from (f"spacing {dx:g} m: {line}" for line in warnings(Scene(case)))
+        sizes = {(case.space.spacing, case.space.finest): case for case in loaded}
+        found = (
+            f"spacing {dx:g} m: {line}" for (dx, _), case in sizes.items() for line in warnings(Scene(case))
+        )
+        yield from dict.fromkeys(found)
 
     def _left(self, results: list[dict], k: int) -> str:
-        """How long the rest may take, from the particle-steps of the runs so far."""
+        """How long the rest may take, by what is foreseen of each run and what the last of them took."""
         done = [(c, r) for c, r in zip(self.cases, results) if r["status"] == DONE]
         if not done:
             return ""
-        d = self.case.space.dimensions
-
-        def size(case) -> float:
-            return 0.0 if isinstance(case, CaseError) else case.space.spacing ** -(d + 1.0)
-
         case, result = done[-1]
-        left = sum(map(size, self.cases[k:])) / size(case) * result["seconds"]
+        left = sum(map(self._foreseen, self.cases[k:])) / self._foreseen(case) * result["seconds"]
         return f" about {report.seconds(left)} left"
+
+    def _foreseen(self, case: Case | CaseError) -> float:
+        """Seconds that a run may take, on any machine alike."""
+        if isinstance(case, CaseError):
+            return 0.0
+        scene = Scene(case)
+        return forecast(scene, make_plan(scene), self.comm.size).seconds
 
     def _rows(self, results: list[dict]) -> list[dict]:
         """Settings, errors and figures of each run, flat; rank 0 alone."""
-        finest = self._finest(results)
+        self.reference = finest = self._finest(results)
         reference = self.folder / f"run-{finest + 1:02d}" if finest is not None else None
         rows = []
         for k, (settings, result) in enumerate(zip(self.every, results)):
-            own = settings | ({SPACING: self.cases[k].space.spacing} if result["status"] == DONE else {})
+            space = self.cases[k].space if result["status"] == DONE else None
+            own = settings | ({SPACING: space.spacing, report.FINEST_SPACING: space.finest} if space else {})
             folder = self.folder / f"run-{k + 1:02d}"
             if result["status"] == DONE:
                 errors, shift = self.judge.errors(folder, reference)
@@ -144,28 +155,28 @@ class StudyRuns:
                 row[error] = row[difference] + own.error
 
     def _finest(self, results: list[dict]) -> int | None:
-        """The run with the smallest spacing and nothing else changed."""
+        """The run with the smallest spacing anywhere; of several that which is as fine in most of its domain,
+        and has least else changed."""
         done = [
-            (case.space.spacing, len(self.every[k]), k)
+            (case.space.finest, case.space.spacing, len(self.every[k]), k)
             for k, (case, result) in enumerate(zip(self.cases, results))
             if result["status"] == DONE
         ]
-        return min(done)[2] if done else None
+        return min(done)[-1] if done else None
 
     def conclude(
         self, rows: list[dict], sentences: list[str], error: float | None, seconds: float | None
     ) -> Iterator[str]:
         """Write the files and yield the lines to print, ``sentences`` among them; rank 0 alone."""
-        keys = self.keys
-        ladders = list(self.ladders(rows))
-        pasted = [(self._written_out(shared), *rest) for shared, *rest in ladders]
+        keys, found, error_words = self.keys, self.concluded(rows), self._error_in_words()
+        pasted = [(self._written_out(shared), *rest) for shared, *rest in found.ladders()]
         scene = Scene(self.case)
         answer = list(answers(pasted, scene, error, seconds)) if error or seconds else []
         title = f"{self.case.title or self.case.name}: what accuracy costs"
         page = [
             f"# {title}",
             "",
-            f"Error: {self.judge.in_words}.",
+            f"Error: {error_words}.",
             "",
             *report.markdown(rows, keys),
             "",
@@ -178,7 +189,7 @@ class StudyRuns:
             self.folder / KEPT,
             {
                 "case": self.case.file,
-                "error": self.judge.in_words,
+                "error": error_words,
                 "rows": rows,
                 "vary": keys,
                 "dimensions": self.case.space.dimensions,
@@ -186,13 +197,17 @@ class StudyRuns:
                 "conditions": [conditions(case) for case in self._first_of_each_ladder()],
             },
         )
-        for one in self._numbers(rows):
+        by_name: dict[str, list[tuple[str, NumberLadder]]] = {}
+        for name, one in found.numbers():
             if len(one.values) > 1:
-                draw_number(self.folder / PICTURE_OF.format(one.name), title, one)
-        good = [row for row in rows if row["error_l2"] > 0.0]
-        if good:
-            self._draw(title, rows, good, error)
-        yield f"error: {self.judge.in_words}"
+                by_name.setdefault(one.name, []).append((name, one))
+        for earlier in self.folder.glob(PICTURE_OF.format("*")):
+            earlier.unlink()
+        for number, ladders in by_name.items():
+            draw_number(self.folder / PICTURE_OF.format(number), title, ladders)
+        if any(row["error_l2"] > 0.0 for row in rows):
+            self._draw(title, error_words, found, error)
+        yield f"error: {error_words}"
         yield from report.plain(rows, keys)
         yield from sentences
         yield from answer
@@ -212,81 +227,30 @@ class StudyRuns:
                 settings |= choices(str(value), space.dimensions, space.periodic)
         return settings | {k: v for k, v in shared.items() if k != PROFILE}
 
-    def ladders(self, rows: list[dict]) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
-        """Runs that share all but the spacing: what they share, their rows, their fit."""
-        yield from ladders_of(rows, self.keys, self.case.space.dimensions)
+    def concluded(self, rows: list[dict]) -> Conclusions:
+        """What the rows tell."""
+        return Conclusions(self.case, self.keys, rows)
 
     def sentences(self, rows: list[dict]) -> Iterator[str]:
         """The conclusions from the rows, in sentences."""
-        ladders = list(self.ladders(rows))
-        several = sum(ladder is not None for *_, ladder in ladders) > 1
-        if own := self.own_errors.get("l2"):
-            yield words.own_error_words(own)
-        for shared, _, ladder in ladders:
-            if ladder:
-                yield from words.ladder_words(ladder, name_of(shared) if several else "")
-        base = next((ladder for shared, _, ladder in ladders if ladder and not shared), None)
-        yield from self._choices(rows, base)
-        yield from self._limits(rows)
-        yield from sentences_of_numbers(self._numbers(rows))
-        front = [name_of({k: row[k] for k in self.keys if k in row}) for row in pareto(rows)]
-        if 0 < len(front) < len(rows) and len(rows) > 2:
-            yield words.front_words(front)
-        yield from words.failed_words(rows)
+        yield from self.concluded(rows).sentences(self.own_errors.get("l2"))
 
-    def _choices(self, rows: list[dict], ladder: fit.Ladder | None) -> Iterator[str]:
-        """Each choice against the run that differs from it in that alone."""
-        for row in rows:
-            own = [key for key in self.keys if key in row and key != SPACING]
-            if len(own) != 1:
-                continue
-            others = {k: v for k, v in row.items() if k in self.keys and k not in own}
-            plain = [
-                other
-                for other in rows
-                if other["status"] == DONE
-                and other["error_l2"] > 0.0
-                and {k: v for k, v in other.items() if k in self.keys} == others
-            ]
-            if plain:
-                yield words.against_base(row, plain[0], own[0], ladder)
+    def _error_in_words(self) -> str:
+        """What the errors are of; against the finest run also which that is; rank 0 alone."""
+        said, k = self.judge.in_words, self.reference
+        if self.judge.against != FINEST or k is None:
+            return said
+        space = self.cases[k].space
+        if space.refine:
+            said += f" ({name_of(self.every[k], self.keys)}: {space.finest:g} m where it is finest)"
+        return f"{said}, {'its own error added' if self.own_errors.get('l2') else 'its own error unknown'}"
 
-    def _alone(self, rows: list[dict]) -> list[dict]:
-        """The rows of finished runs that differ in the spacing alone."""
-        done = (row for row in rows if row["status"] == DONE)
-        return [row for row in done if not any(k in row for k in self.keys if k != SPACING)]
-
-    def _numbers(self, rows: list[dict]) -> list[NumberLadder]:
-        """The numbers of the case over spacings, where there are several."""
-        alone = self._alone(rows)
-        return [*ladders_of_numbers(self.case, alone)] if len(alone) > 1 else []
-
-    def _limits(self, rows: list[dict]) -> Iterator[str]:
-        """Means of the probes at zero spacing, from three runs or more."""
-        alone = self._alone(rows)
-        for name in alone[0] if alone else ():
-            if name.startswith(MEAN):
-                values = [row[name] for row in alone]
-                limit = fit.richardson([row[SPACING] for row in alone], values)
-                finest = min(alone, key=lambda row: row[SPACING])[name]
-                if limit:
-                    yield words.limit_words(name, limit, finest, len(values))
-
-    def _draw(self, title: str, rows: list[dict], good: list[dict], error: float | None) -> None:
-        curves = [
-            (name_of(shared) if shared else "as it is", [row for row in part if row in good])
-            for shared, part, _ in self.ladders(rows)
-        ]
+    def _draw(self, title: str, subtitle: str, found: Conclusions, error: float | None) -> None:
+        curves = list(found.curves())
+        good = [row for _, rows in curves for row in rows]
         enough = [row for row in good if error and row["error_l2"] <= error]
         goal = (error, min(enough, key=lambda row: row["seconds"])) if enough else None
-        draw(
-            self.folder / PICTURE,
-            title,
-            self.judge.in_words,
-            [curve for curve in curves if curve[1]],
-            pareto(rows),
-            goal,
-        )
+        draw(self.folder / PICTURE, title, subtitle, curves, pareto(good), goal)
 
 
 def _outcome(result: dict) -> str:
@@ -302,12 +266,6 @@ def _outcome(result: dict) -> str:
 
 SHIFT = "time_shift"
 """Column of a row: how late its curve is, s, where a shift is taken out."""
-
-DIFFERENCE = "difference_"
-"""Columns of a row: its difference from the finest run, in three norms, where that run is the reference."""
-
-MEAN, SPREAD = "mean ", "spread "
-"""Columns of a row: a probe's mean and standard deviation over time."""
 
 
 def vitals(run: Folder, study) -> dict[str, float]:
@@ -329,29 +287,3 @@ def vitals(run: Folder, study) -> dict[str, float]:
         "momentum_drift": math.hypot(*(float(p[-1] - p[0]) for p in momentum)),
         "density_error": float(log["density_error"].max()),
     }
-
-
-def ladders_of(
-    rows: list[dict], keys: list[str], dimensions: int
-) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
-    """Runs that share all but the spacing: what they share, their rows, their fit."""
-    every = [{k: row[k] for k in keys if k in row} for row in rows]
-    for shared, places in groups(every):
-        part = [rows[k] for k in places if rows[k]["status"] == DONE]
-        runs = [
-            fit.RunPoint(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part
-        ]
-        enough = len({run.spacing for run in runs if run.error > 0.0}) > 1
-        estimated = any(f"{DIFFERENCE}l2" in row for row in part)
-        ladder = fit.Ladder(runs, dimensions, estimated) if enough else None
-        yield shared, [rows[k] for k in places], ladder
-
-
-def pareto(rows: list[dict]) -> list[dict]:
-    """Rows that no other beats in both error and time, the fastest first."""
-    good = sorted((r for r in rows if r["error_l2"] > 0.0), key=lambda r: r["seconds"])
-    front: list[dict] = []
-    for row in good:
-        if not front or row["error_l2"] < front[-1]["error_l2"]:
-            front.append(row)
-    return front

@@ -3,14 +3,20 @@
 import math
 from collections.abc import Iterator, Sequence
 
+from psph.case.loader import parts_of
+from psph.case.physics import PREFIX
+from psph.case.profiles import OFF
 from psph.lab.study.fit import LAST, Estimate, Extrapolated, Ladder, OwnError
-from psph.lab.study.ladder import SPACING, short, toml
+from psph.lab.study.ladder import SPACING, toml
 from psph.lab.study.report import joined, percent, seconds
 
 SAME = 0.005
 """Relative changes below are called none."""
 
 HALF = 0.5
+
+FARTHEST = 2.0
+"""How far beyond the spacings of a ladder times are compared, over the first and the last of them."""
 
 ALL_WRONG = 1.0
 """Relative error from which on a spacing for half of it is no advice."""
@@ -72,18 +78,24 @@ def own_error_words(own: OwnError) -> str:
     )
 
 
-def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
-    """What one choice changes at the same spacing; with a ladder, what it saves at equal error."""
-    what = f"{short(key)} {toml(row[key])}"
+def against_base(row: dict, base: dict, what: str, ladder: Ladder | None) -> str:
+    """``what`` one choice changes at the same spacing; with a ladder, what it saves at equal error."""
     if row["status"] != "done":
         return f"{what}: {row['status']}."
-    time, error = row["seconds"] / base["seconds"], row["error_l2"] / base["error_l2"]
+    time, error = row["seconds"] / base["seconds"], row["error_l2"]
+    if math.isnan(error):
+        return f"{what} takes {time:.2f} times as long; its own error is not known."
+    if not base["error_l2"] > 0.0:
+        return f"{what} takes {time:.2f} times as long and has an error of {percent(error)}."
+    error /= base["error_l2"]
     same = f"{what} takes {time:.2f} times as long and has {error:.2f} times the error"
     if abs(error - 1.0) < SAME:
         same = f"{what} takes {time:.2f} times as long and has the same error"
     if ladder is None or not ladder.steady or not error > 0.0:
         return f"{same}."
     spacing = base[SPACING] * (1.0 / error) ** (1.0 / ladder.order.value)
+    if not ladder.runs[-1].spacing / FARTHEST <= spacing <= ladder.runs[0].spacing * FARTHEST:
+        return f"{same}."
     scaled = time * ladder.seconds(spacing).value / ladder.seconds(base[SPACING]).value
     return f"{same}: about {scaled:.2f} of the time for the same error."
 
@@ -118,7 +130,11 @@ def advice(settings: dict, error: Estimate, time: Estimate) -> Iterator[str]:
     tables: dict[str, list[str]] = {}
     for key, value in settings.items():
         table, _, name = key.rpartition(".")
-        tables.setdefault(table, []).append(f"{name} = {_written(value)}")
+        unsaid = value == OFF and not key.startswith(PREFIX)
+        if unsaid or any(part.isdigit() for part in parts_of(key)):  # no line of a case says so
+            tables.setdefault("", []).append(f"# and by the option --set {key}={toml(value)}")
+        else:
+            tables.setdefault(table, []).append(f"{name} = {_written(value)}")
     yield from tables.pop("", ())  # TOML wants them before any table
     for table, lines in tables.items():
         yield f"[{table}]"

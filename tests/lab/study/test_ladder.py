@@ -23,6 +23,7 @@ def test_what_varies_comes_from_the_case_or_the_command_line():
         ({"space.spacing": (0.1,)}, [], "one value only, 0.1"),
         ({}, ["space.spacing=0.1,0.1"], "one value only"),
         ({}, ["space.spacing=0.1,0.2,0.1"], "appears twice"),
+        ({}, ["space.refine[0].factor=1,2", "space.refine.0.factor=2,4"], "given twice"),
         ({}, ["space.spacing"], "write it as key=value,value"),
         ({}, ["=1,2"], "write it as key=value,value"),
     ],
@@ -39,6 +40,22 @@ def test_one_at_a_time_or_all_together():
     assert [r.get("space.kernel") for r in one] == [None, None, None, "cubic", "quintic"]
     assert len(rows(vary, grid=True)) == 6 and rows(vary, grid=True)[0]["space.spacing"] == 0.04
     assert rows({"time.cfl": [0.1, 0.2]}, grid=False) == [{}, {"time.cfl": 0.1}, {"time.cfl": 0.2}]
+
+
+def test_off_alone_is_with_and_without():
+    """And no key of what is off is said."""
+    assert rows(wanted({"space.refine": ("off",)}, []), grid=False) == [{}, {"space.refine": "off"}]
+    given = wanted({}, ["space.refine=off", "space.refine[0].factor=2,4", "space.refined=1,2"])
+    found = [overrides(row) for row in rows(given, grid=True)]
+    for factor in ("2", "4"):
+        assert [f"space.refine[0].factor={factor}", "space.refined=1"] in found
+    assert found.count(["space.refine=off", "space.refined=1"]) == 1 and len(found) == 6
+
+
+def test_a_name_tells_a_key_from_others_that_end_alike():
+    keys = ["space.refine[0].factor", "space.refine[1].factor", "space.spacing", "a.time_scale"]
+    assert name_of({keys[0]: 2, keys[1]: 4}, keys) == "refine[0].factor 2, refine[1].factor 4"
+    assert name_of({keys[1]: 4}, keys[1:]) == "factor 4" and name_of({keys[3]: 1}, keys) == "time scale 1"
 
 
 def test_settings_are_told_apart_and_together():

@@ -55,13 +55,13 @@ def test_too_few_runs_leave_the_uncertainty_unknown():
 def test_a_choice_is_weighed_at_equal_error():
     base = {"status": "done", "seconds": 1.0, "error_l2": 0.04, "space.spacing": 0.02}
     better = base | {"space.kernel": "cubic", "seconds": 1.5, "error_l2": 0.02}
-    said = against_base(better, base, "space.kernel", ladder(0.16, 0.04, 0.01))
+    said = against_base(better, base, "kernel cubic", ladder(0.16, 0.04, 0.01))
     assert said.startswith("kernel cubic takes 1.50 times as long and has 0.50 times the error")
     assert said.endswith("about 0.53 of the time for the same error.")  # 1.5/2^(3/2)
     same = base | {"space.kernel": "cubic", "error_l2": 0.04001}
-    assert "has the same error." in against_base(same, base, "space.kernel", None)
+    assert "has the same error." in against_base(same, base, "kernel cubic", None)
     failed = {"status": "it blew up", "space.kernel": "cubic"}
-    assert against_base(failed, base, "space.kernel", None) == "kernel cubic: it blew up."
+    assert against_base(failed, base, "kernel cubic", None) == "kernel cubic: it blew up."
 
 
 def test_advice_can_be_pasted():
