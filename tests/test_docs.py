@@ -27,6 +27,7 @@ from psph.case.physics import physics_table
 from psph.case.shapes import Shape
 from psph.composition.trial import reads
 from psph.fields import OTHER, SAVED, by_name
+from psph.lab.study.ladder import overrides, rows, wanted
 from psph.options import parser
 from psph.output import diagnostics
 from psph.output.frames import FrameFile
@@ -191,6 +192,9 @@ def test_commands_are_accepted(page, command, drop):
         assert case is None or (ROOT / case).exists() or case == Path(drop.name)
         if case is not None:
             load(drop if case == Path(drop.name) else ROOT / case, options.set)
+        if vary := getattr(options, "vary", None):
+            for run in rows(wanted({}, vary), options.grid):
+                load(ROOT / case, [*options.set, *overrides(run)])
     elif words[0] == "sbatch":
         script, *rest = itertools.dropwhile(lambda word: word.startswith("--"), words[1:])
         assert (ROOT / script).exists()
