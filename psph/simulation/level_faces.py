@@ -67,7 +67,7 @@ class FaceShares:
 
     def tell(self, lists: Neighbours) -> np.ndarray:
         """Write the shares of the fluid that ``lists`` name beside walls and bodies whose push is asked for;
-        who of it, and who of these by the faces that they have, is told of (owned,)."""
+        who of it, and who of these by the faces that they have, is told of (owned,); collective."""
         store, layout, levels = self._store, self._layout, self._levels
         groups, beside = self._domain.groups(), np.zeros(store.owned, bool)
         find_beside(store.owned, store.low, lists, self._loaded[groups], beside)
@@ -96,6 +96,7 @@ class FaceShares:
         for array, values in zip((share, *along), (found, *slope.T)):
             array[:] = 0.0
             array[rows[flows]] = values[flows]
+        self._domain.halo.refresh((SHARE.name, SLOPE.name))  # what ghosts have is of the lists before
         told = np.zeros(store.owned, bool)
         told[rows] = (found > 0.0) | slope.any(axis=1)
         return told

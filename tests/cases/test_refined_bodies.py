@@ -249,6 +249,25 @@ def test_same_bits_with_a_paddle_and_a_float(mpi_tmp_path):
     assert many.engine.of("bodies").state() == single.engine.of("bodies").state()
 
 
+def turning(folder):
+    """The box, turning, in the middle of its stream, where ranks meet, and a border along that."""
+    text = CARRIED.replace("SPIN", "4.0").replace("[0.32, 0.24]", "[0.54, 0.24]")
+    text = text.replace("[0.44, 0.36]", "[0.66, 0.36]")
+    return draft(folder, text.replace("[0.6, 0.0], upper = [1.2", "[-0.1, 0.3], upper = [1.3"))
+
+
+@pytest.mark.mpi(min_size=2)
+def test_same_bits_where_a_body_turns_at_a_border_between_ranks(mpi_tmp_path):
+    """What ranks know of each other's shares has to be of the same lists: until 29 November it was of those
+    before."""
+    case = together(mpi_tmp_path, turning)
+    many, single = (steps(case, comm, 60) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    assert single.domain.rebuilds > 2
+    (rows, *_), (alone, *_) = state(many), state(single)
+    assert np.array_equal(rows, alone)
+    assert many.engine.of("bodies").state() == single.engine.of("bodies").state()
+
+
 @pytest.mark.mpi(min_size=2)
 def test_a_paddle_and_a_float_go_on_on_one_rank(mpi_tmp_path):
     case = together(mpi_tmp_path, driven)
