@@ -55,6 +55,7 @@ class Guards:
         self._books = not unbooked and all(kind.keeps_energy for kind in simulation.plan.matter)
         self._walls = [(WallRegion(scene), None)]
         self._walls += [(WallRegion(scene, one), row) for row, one in enumerate(materials.rigid)]
+        self._levels = np.array([one.level for one in materials.species])
         self.seen: Counter[str] = Counter()
         mass = moving_mass(simulation.comm, simulation.store)
         self._usual = scene.sound_speed / SOUND_OVER_SPEED
@@ -161,9 +162,10 @@ class Guards:
         hidden = store.shown("kind") == FLUID
         places = self.simulation.domain.inside(store.shown("position")[hidden])
         deep = np.zeros(len(places), bool)
+        depth = self.bounds.depth * 0.5 ** self._levels[store.shown("group")[hidden]]
         for wall, row in self._walls:
             then, once = self._taken_back(row, places)
-            deep |= wall.deep(then, self.bounds.depth, once)
+            deep |= wall.deep(then, depth, once)
         hidden[hidden] = deep
         return hidden
 
@@ -217,7 +219,7 @@ class Guards:
         what = (
             f"the run {verb} at step {sim.steps}, time {sim.time:.6g} s: "
             f"{self._words(guard, suspect)}; "
-            + (f"pushed hardest by {push.name}" if push else "nothing pushes it now")
+            + (f"pushed hardest by {push.name}" if push else _unpushed(suspect))
         )
         tries = advice(self.scene, guard, suspect)
         try:
@@ -251,7 +253,18 @@ class Guards:
         return f"{kept} {typed(*again, '--set', 'guards.on_trouble=warn')} goes on from it."
 
     def _find(self, guard: str) -> Suspect:
-        return find(self.simulation, self.scene, getattr(self, f"_worst_by_{guard}")())
+        worst = getattr(self, f"_worst_by_{guard}")()
+        follow = self.simulation.plan.materials.where(lambda one: one.follows)
+        if follow.any():  # what leads comes first: the others have it from there
+            lead = np.where(follow[self.simulation.store.shown("group")], -np.inf, worst)
+            [largest_lead] = largest(self.simulation.comm, [lead.max(initial=-np.inf)])
+            worst = lead if largest_lead > self._least_bad(guard) else worst
+        return find(self.simulation, self.scene, worst)
+
+    def _least_bad(self, guard: str) -> float:
+        """How bad a particle has to be so that a guard trips."""
+        bounds = {"speed": self.bounds.speed * self.scene.sound_speed, "density": self.bounds.density}
+        return bounds.get(guard, 0.0)
 
     def _worst_by_finite(self) -> np.ndarray:
         store = self.simulation.store
@@ -295,7 +308,7 @@ class Guards:
     def _words(self, guard: str, suspect: Suspect) -> str:
         """What is wrong, and the bound that it passes."""
         c = self.scene.sound_speed
-        who = f"particle {suspect.id}"
+        who = suspect.name
         if guard == "finite":
             return f"{who} has a position, velocity or density that is not finite"
         if guard == CLOCK:
@@ -329,3 +342,8 @@ class Guards:
                     f"all particles have won {self._gain():.3g} times the kinetic energy that they "
                     f"have at {self._usual:.3g} m/s{bound}; the fastest is {who}"
                 )
+
+
+def _unpushed(suspect: Suspect) -> str:
+    """Why no effect pushes a particle."""
+    return "it goes as those of another size around it do" if suspect.follows else "nothing pushes it now"

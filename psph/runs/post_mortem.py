@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from psph.fields import KINDS
 from psph.output.errors import together
 from psph.runs.worst_particle import Suspect
 
@@ -38,7 +37,7 @@ def write_post_mortem(
                 path.with_name(PICTURE),
                 scene.case.title or scene.case.name,
                 simulation.time,
-                scene,
+                suspect.scene,
                 suspect.around,
                 suspect.offset,
                 suspect.column,
@@ -56,7 +55,7 @@ def _report(scene, simulation, what, suspect, tries, left) -> Iterator[str]:
     yield "\n## What pushed it in the last step\n"
     yield from _pushes(suspect)
     yield "\n## Neighbours\n"
-    yield from _neighbours(scene, suspect)
+    yield from _neighbours(suspect)
     yield f"\n![Around the particle: pressure and velocity]({PICTURE})\n"
     yield "## What to try\n"
     yield from (f"- {one[0].upper()}{one[1:]}." for one in tries)
@@ -65,10 +64,11 @@ def _report(scene, simulation, what, suspect, tries, left) -> Iterator[str]:
 
 def _particle(scene, simulation, suspect: Suspect) -> Iterator[str]:
     speed, ratio = suspect.speed, suspect.value("density") / suspect.value("rest_density")
-    kind = KINDS[suspect.value("kind")]
-    push, change = suspect.hardest(), suspect.fastest_change()
+    own, push, change = suspect.scene, suspect.hardest(), suspect.fastest_change()
+    nothing = "nothing: it goes as those of another size around it do" if suspect.follows else "nothing"
     rows = {
-        "particle": f"{suspect.id}, {kind}",
+        "particle": f"{suspect.id}, {suspect.kind(suspect.column)}",
+        **({"level of sizes": f"{suspect.level}, spacing {own.spacing:g} m"} if scene.finer else {}),
         "place (m)": _vector(suspect.place),
         "time (s)": f"{simulation.time:.6g}, step {simulation.steps:,}",
         "velocity (m/s)": f"{_vector(suspect.value('velocity'))}: {speed:.4g}, "
@@ -76,9 +76,9 @@ def _particle(scene, simulation, suspect: Suspect) -> Iterator[str]:
         "density (kg/m³)": f"{suspect.value('density'):.5g}, {ratio:.4g} of rest",
         "pressure (Pa)": f"{suspect.value('pressure'):.4g}",
         "acceleration (m/s²)": _vector(suspect.value("acceleration")),
-        "pushed hardest by": f"{push.name}, {_length(push):.4g} m/s²" if push else "nothing",
+        "pushed hardest by": f"{push.name}, {_length(push):.4g} m/s²" if push else nothing,
         "density changed most by": (
-            f"{change.name}, {change.density_rate:.4g} kg/(m³ s)" if change else "nothing"
+            f"{change.name}, {change.density_rate:.4g} kg/(m³ s)" if change else nothing
         ),
         "time step (s)": f"{simulation.dt:.4g}, set by {simulation.limited_by}",
     }
@@ -88,6 +88,9 @@ def _particle(scene, simulation, suspect: Suspect) -> Iterator[str]:
 
 def _pushes(suspect: Suspect) -> Iterator[str]:
     """Every effect's part, the hardest push first."""
+    if suspect.follows:
+        yield "Nothing: it follows those of another size around it; look there."
+        return
     total = suspect.value("acceleration")
     length = np.linalg.norm(total)
     along = total / length if 0.0 < length < np.inf else np.zeros(len(total))
@@ -106,19 +109,19 @@ def _pushes(suspect: Suspect) -> Iterator[str]:
     )
 
 
-def _neighbours(scene, suspect: Suspect) -> Iterator[str]:
-    around, distance = suspect.around, suspect.distance
+def _neighbours(suspect: Suspect) -> Iterator[str]:
+    scene, around, distance = suspect.scene, suspect.around, suspect.distance
     reach = scene.support
     order = np.lexsort((around.shown("id"), distance))
     order = order[(distance[order] <= reach) & (order != suspect.column)]
-    yield f"{len(order)} within the support ({reach / scene.spacing:.3g} dx), the nearest first.\n"
+    of = f" of its size, dx = {scene.spacing:g} m" if suspect.level or scene.finer else ""
+    yield f"{len(order)}{of} within the support ({reach / scene.spacing:.3g} dx), the nearest first.\n"
     if not len(order):
         return
     yield "| id | kind | distance (dx) | velocity (m/s) | pressure (Pa) |\n|---|---|---|---|---|"
     for k in order[:LISTED]:
-        kind = KINDS[around.shown("kind")[k]]
         yield (
-            f"| {around.shown('id')[k]} | {kind} | {distance[k] / scene.spacing:.3g} | "
+            f"| {around.shown('id')[k]} | {suspect.kind(k)} | {distance[k] / scene.spacing:.3g} | "
             f"{_vector(around.shown('velocity')[k])} | {around.shown('pressure')[k]:.4g} |"
         )
 

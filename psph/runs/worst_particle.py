@@ -1,6 +1,6 @@
 """The particle that went wrong: who it is, what pushed it, and who stands around it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from psph.composition import terms
 from psph.composition.mirrors import at_look, image, images
 from psph.composition.pair import geometry, take
 from psph.composition.terms import added, pushed
-from psph.fields import seen_at
+from psph.fields import KINDS, seen_at, with_length
 from psph.particles.store import Store
 from psph.simulation.step import Simulation
 from psph.vectors import add, nearest_image, subtract, zero_like
@@ -34,9 +34,11 @@ class Share(NamedTuple):
 
 
 class Suspect(NamedTuple):
-    """A particle, the particles around it in the order of their ids, and its forces' shares.
+    """A particle, the particles of its size around it in the order of their ids, and its forces' shares:
+    none of one that follows others.
 
-    ``offset`` (n, dim) is where they stand as seen from it, m; ``column`` its own place there.
+    ``offset`` (n, dim) is where they stand as seen from it, m; ``column`` its own place there; ``scene`` has
+    the spacing and the kernel of its ``level`` of sizes; ``follow`` tells who around it follows others.
     """
 
     id: int
@@ -45,10 +47,28 @@ class Suspect(NamedTuple):
     offset: np.ndarray
     column: int
     shares: tuple[Share, ...]
+    scene: Any
+    level: int
+    follow: np.ndarray
 
     def value(self, name: str):
         """A field of the particle itself: a number, or (dim,)."""
         return self.around.shown(name)[self.column]
+
+    @property
+    def name(self) -> str:
+        """Who it is, in words: with its spacing where there are several."""
+        sized = len(self.scene.finer) > 0 or self.level
+        return f"particle {self.id}" + (f" (level {self.level}, {self.scene.spacing:g} m)" if sized else "")
+
+    @property
+    def follows(self) -> bool:
+        """Whether it goes as those of another size around it do."""
+        return bool(self.follow[self.column])
+
+    def kind(self, k: int) -> str:
+        """What one of those around it is, in words."""
+        return "fluid that follows" if self.follow[k] else KINDS[self.around.shown("kind")[k]]
 
     @property
     def speed(self) -> float:
@@ -77,23 +97,26 @@ def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
     Its forces are those of the last pass over the pairs, so nothing may have touched the pressure
     since.  The same on any number of ranks.
     """
-    store = simulation.store
-    ids, mine = store.shown("id"), (-np.inf, 0, None)
+    store, plan, species = simulation.store, simulation.plan, simulation.plan.materials.species
+    ids, mine = store.shown("id"), (-np.inf, 0, None, 0)
     if store.owned:
         k = np.lexsort((ids, -badness))[0]
-        mine = float(badness[k]), -int(ids[k]), _places(store)[k].copy()
-    _, least, place = max(simulation.comm.allgather(mine), key=lambda one: one[:2])
+        mine = float(badness[k]), -int(ids[k]), _places(store)[k].copy(), int(store.shown("group")[k])
+    _, least, place, group = max(simulation.comm.allgather(mine), key=lambda one: one[:2])
+    level = species[group].level
+    scene, plan = (scene, *scene.finer)[level], (plan, *plan.finer)[level]
     reach = max(SEEN * scene.spacing, scene.support)
-    around = _gathered(simulation, scene, place, reach)
+    around = _gathered(simulation, scene, place, reach, ~plan.materials.others[level])
     column = int(np.flatnonzero(around.shown("id") == -least)[0])
     offset = _away(_places(around), place, scene.layout.periods)
     place = simulation.domain.inside(place[None])[0]
-    shares = _shares(simulation, scene, around, column, offset)
+    follow = plan.materials.where(lambda one: one.follows)[around.shown("group")]
+    shares = () if follow[column] else _shares(simulation, scene, plan, around, column, offset)
     if any(kind.pushes_within for kind in simulation.plan.matter):
         others = sum((one.acceleration for one in shares), np.zeros(scene.dimensions))
         inner = around.shown("acceleration")[column] - others
         shares = (*shares, Share(INNER, inner, 0.0, np.zeros(scene.dimensions)))
-    return Suspect(-least, place, around, offset, column, shares)
+    return Suspect(-least, place, around, offset, column, shares, scene, level, follow)
 
 
 def _places(store: Store) -> np.ndarray:
@@ -111,11 +134,13 @@ def _away(places: np.ndarray, centre: np.ndarray, periods) -> np.ndarray:
     return away
 
 
-def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -> Store:
-    """The particles of all ranks within ``reach`` m of a place, on every rank, by their ids."""
+def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float, groups: np.ndarray) -> Store:
+    """The particles of some ``groups``, of all ranks, within ``reach`` m of a place, on every rank, by their
+    ids."""
     store = simulation.store
     with np.errstate(over="ignore", invalid="ignore"):
         near = np.linalg.norm(_away(_places(store), centre, scene.layout.periods), axis=1) <= reach
+    near &= groups[store.shown("group")]
     names = ("id", "group", *store.rows)
     parts = simulation.comm.allgather({name: store.shown(name)[near] for name in names})
     every = {name: np.concatenate([part[name] for part in parts]) for name in names}
@@ -130,13 +155,15 @@ def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -
     return gathered
 
 
-def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -> tuple:
-    """What each effect does to a particle, by its plain formulas over its neighbours, in mirrors too."""
+def _shares(simulation, scene, plan, around: Store, column: int, offset: np.ndarray) -> tuple:
+    """What each effect of the ``plan`` of its level does to a particle, by its plain formulas over its
+    neighbours, in mirrors too."""
     view = seen_at(around.view(), simulation.previous_speed)
+    view = with_length(view, scene.smoothing_length) if simulation.plan.finer else view
     reach = scene.support
-    near = np.flatnonzero((np.linalg.norm(offset, axis=1) <= reach) & bool(simulation.plan.passes))
+    near = np.flatnonzero((np.linalg.norm(offset, axis=1) <= reach) & bool(plan.passes))
     i = take(view, column)
-    mirrors = simulation.plan.mirrors
+    mirrors = plan.mirrors
     pairs = []
     with np.errstate(all="ignore"):
         for m in range(images(mirrors)):
@@ -144,7 +171,7 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
                 j = image(at_look(mirrors, 2 * m), i, take(view, k))
                 x_ij = nearest_image(subtract(i.position, j.position), scene.layout.periods)
                 pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
-        return tuple(_share(call, i, pairs, simulation.dt) for call in simulation.plan.called)
+        return tuple(_share(call, i, pairs, simulation.dt) for call in plan.called)
 
 
 def _share(call, i, pairs, dt: float) -> Share:

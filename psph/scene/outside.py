@@ -34,8 +34,11 @@ class WallRegion:
         """The numbers of these walls."""
         return tuple(np.flatnonzero(self._still).tolist())
 
-    def deep(self, position: np.ndarray, depth: float, once: Container[int] = frozenset()) -> np.ndarray:
-        """True where a point of ``position`` (n, dim) lies ``depth`` spacings behind every face.
+    def deep(
+        self, position: np.ndarray, depth: float | np.ndarray, once: Container[int] = frozenset()
+    ) -> np.ndarray:
+        """True where a point of ``position`` (n, dim) lies ``depth`` spacings, (n,) or for all, behind every
+        face.
 
         A point that is inside, and so are the points so far away along each axis, both ways.  Along the
         axes ``once`` periods do not count: points there are taken where they are.
@@ -43,9 +46,10 @@ class WallRegion:
         outside = np.zeros(len(position), bool)
         if not self._still.any():
             return outside
+        far = np.broadcast_to(depth * self.scene.spacing, len(position))
         for first in range(0, len(position), AT_ONCE):
-            part = position[first : first + AT_ONCE]
-            outside[first : first + AT_ONCE] = self._deep(part, depth * self.scene.spacing, once)
+            part = slice(first, first + AT_ONCE)
+            outside[part] = self._deep(position[part], far[part], once)
         return outside
 
     @cached_property
@@ -56,9 +60,9 @@ class WallRegion:
             for d, period in enumerate(self.scene.layout.periods)
         )
 
-    def _deep(self, position: np.ndarray, depth: float, once: Container[int]) -> np.ndarray:
+    def _deep(self, position: np.ndarray, depth: np.ndarray, once: Container[int]) -> np.ndarray:
         outside = self._inside(position, once)
-        near = position[outside]  # few: the rest is far from any wall's inside
+        near, depth = position[outside], depth[outside]  # few: the rest is far from any wall's inside
         held = np.ones(len(near), bool)
         for d in range(self.scene.dimensions):
             for away in (-depth, depth):

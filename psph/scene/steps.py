@@ -3,6 +3,11 @@
 from collections.abc import Iterator
 
 
+def finest_of(scene):
+    """A ``scene`` as its finest level of sizes sees it: that has the shortest steps."""
+    return (scene, *scene.finer)[-1]
+
+
 def shorter_step(scene) -> Iterator[str]:
     """The cure of what goes too far in a step."""
     step, cfl = scene.case.time.step, scene.case.time.cfl

@@ -7,7 +7,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.patches import Circle
 
-from psph.fields import WALL
+from psph.fields import BUFFER, WALL
 from psph.output.pictures import style
 from psph.output.pictures.flat import circles
 from psph.output.pictures.scale import SIGNS
@@ -16,6 +16,8 @@ SIZE = 4.6
 """Of the panel, inches."""
 LONGEST = 1.6
 """Spacings of the longest arrow."""
+PALE = 0.45
+"""Opacity of what is led by others."""
 SPREAD = (4.0, 96.0)
 """Percentiles of the pressure at the ends of the colours, so that an outlier does not hide the rest."""
 
@@ -23,12 +25,14 @@ SPREAD = (4.0, 96.0)
 def draw(path: Path, title: str, time: float, scene, around, offset, column: int, place) -> Path:
     """Draw the particles ``around`` (Store), at ``offset`` m (n, dim) from the one in ``column``.
 
-    That one is at ``place`` (dim,) m.  In 3D it is the slice through it that holds the direction of
-    gravity, but for a periodic axis; in 1D the pressure stands upwards.
+    That one is at ``place`` (dim,) m.  What is led by others, as what follows another size, is pale.  In 3D
+    it is the slice through it that holds the direction of gravity, but for a periodic axis; in 1D the
+    pressure stands upwards.
     """
     across, up, seen = _slice(scene, offset)
     fluid = around.shown("kind") != WALL
     subtitle = f"particle {around.shown('id')[column]} and its neighbours, t = {time:.6g} s"
+    subtitle += ", pale: led by others" if (around.shown("kind") == BUFFER).any() else ""
     with style.look():
         figure = style.sheet(
             style.LEFT + SIZE + style.RIGHT, style.TOP + SIZE + style.BOTTOM, title, subtitle
@@ -45,8 +49,10 @@ def draw(path: Path, title: str, time: float, scene, around, offset, column: int
             axes.set_ylim(place[up] - reach, place[up] + reach)
             spots = place[[across, up]] + offset[:, [across, up]]
             circles(axes, spots[seen & ~fluid], scene.spacing, facecolors=style.WALLS)
-            drawn = circles(axes, spots[seen & fluid], scene.spacing, norm=norm, cmap=SIGNS)
-            drawn.set_array(pressure[seen & fluid] * factor)
+            led = around.shown("kind") == BUFFER
+            for some, alpha in ((seen & led, PALE), (seen & fluid & ~led, 1.0)):
+                drawn = circles(axes, spots[some], scene.spacing, norm=norm, cmap=SIGNS, alpha=alpha)
+                drawn.set_array(pressure[some] * factor)
             velocity = around.shown("velocity")[:, [across, up]]
             _arrows(axes, spots, velocity, seen & fluid, scene.spacing)
             _mark(axes, spots[column], scene)

@@ -7,7 +7,7 @@ from psph.fields import FLUID
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.walls.conditions import DYNAMIC
 from psph.scene.pressureless_walls import unbearing_walls
-from psph.scene.steps import shorter_step
+from psph.scene.steps import finest_of, shorter_step
 from psph.scene.walls import layers_needed, thinnest_walls
 
 FASTER = 2.0
@@ -37,7 +37,8 @@ def _driven(scene, guard: str, suspect) -> Iterator[str]:
 
 def _long_step(scene) -> Iterator[str]:
     step, cfl = scene.case.time.step, scene.case.time.cfl
-    limit = scene.case.time.passes * cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
+    h = finest_of(scene).smoothing_length
+    limit = scene.case.time.passes * cfl * h / (scene.sound_speed + scene.expected_speed)
     if step is not None and step > limit:
         yield f"remove time.step = {step:g}: time.cfl = {cfl:g} would allow {limit:.2g} s"
 
