@@ -162,19 +162,27 @@ class Refinement(Kind):
         levels = self.levels
         for level in range(1, levels.count):
             dx, h, wide = levels.spacing(level), levels.smoothing_length(level), levels.margin(level)
-            yield "reach", f"  level {level}     dx = {dx:g} m, h = {h:g} m, margin {wide:g} m"
+            told = (
+                f"dx = {dx:g} m, h = {h:g} m, margin {wide:g} m; {self._starting(level):,} of the particles"
+            )
+            yield "reach", f"  level {level}     {told}"
         for one in self.scene.case.space.refine:
-            if one.moves:
-                going = (
-                    f"moves with {one.moves_with}" if one.moves_with else f"goes with the front {one.front}"
-                )
-                yield "reach", f"  region      {going}"
+            going = f", moves with {one.moves_with}" if one.moves_with else ""
+            going = f", goes with the front {one.front}" if one.front else going
+            yield "reach", f"  region      {one.where}, {one.factor} times finer{going}"
         for level, one in enumerate((plan, *plan.finer)):
             if one.pace > 1:
                 yield (
                     "steps",
-                    f"  level {level}             its steps are {one.pace} of those of the finest",
+                    f"  level {level}             its steps are as long as {one.pace} of the finest",
                 )
+
+    def _starting(self, level: int) -> int:
+        """How many particles of a finer level there are at the start, those in its margin and of its walls
+        too."""
+        layout = self.scene.layout
+        own = [part.number for part in layout.parts if part.level == level]
+        return sum(len(layout.placed[number]) for number in own if number in layout.placed)
 
 
 def _work(simulation):

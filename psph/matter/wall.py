@@ -68,8 +68,8 @@ class Walls(Kind):
         scene = self.scene
         yield from motion_lines(scene)
         yield from wave_lines(scene)
-        for one in scene.species:
-            if deforms(one.motion):
+        for part, one in zip(scene.layout.parts, scene.species):
+            if not part.level and deforms(one.motion):
                 does = type(one.motion).__doc__.splitlines()[0]
                 yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {does}"
         for plane in scene.layout.mirror_planes:

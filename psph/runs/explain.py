@@ -95,12 +95,13 @@ def found_good(scene) -> Iterator[str]:
 
 def _title_lines(scene) -> Iterator[str]:
     yield f"{scene.case.title or scene.case.name} ({scene.case.file})"
-    yield f"  particles   {count_of(scene):,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
+    finest = f", {scene.case.space.finest:g} m where finest" if scene.finer else ""
+    yield f"  particles   {count_of(scene):,} in {scene.dimensions}D, spacing {scene.spacing:g} m{finest}"
 
 
 def _scene_lines(scene, said: dict[str, list[str]]) -> Iterator[str]:
     case = scene.case
-    names = ", ".join(m.name for m in scene.species)
+    names = ", ".join(part.name for part in scene.layout.parts if not part.level and not part.follows)
     yield f"  materials   {names}"
     yield from said["matter"]
     for line in described(scene):
@@ -258,7 +259,10 @@ def _first_line(effect) -> str:
 
 def _step_lines(scene, plan: Plan) -> Iterator[str]:
     yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
-    limits = list(plan.step_limits(scene.expected_speed, pull(scene)))
+    limits = [
+        (step, name if level is None else f"{name}, level {level}")
+        for level, step, name in plan.limits_by_level(scene.expected_speed, pull(scene))
+    ]
     width = _column(name for _, name in limits)
     for step, name in limits:
         yield f"  {name:<{width}}{step:.3g} s"

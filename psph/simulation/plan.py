@@ -258,12 +258,17 @@ class Plan:
 
     def step_limits(self, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """Every limit of the time step with its name, s: its part, of a level whose own steps are longer."""
+        for _, step, name in self.limits_by_level(speed, acceleration):
+            yield step, name
+
+    def limits_by_level(self, speed: float, acceleration: float) -> Iterator[tuple[int | None, float, str]]:
+        """The same, each with its level of sizes; None where there is one, or the step is given."""
         if self.fixed_step is not None:
-            yield self.fixed_step, "time.step"
+            yield None, self.fixed_step, "time.step"
             return
-        for one in (self, *self.finer):
+        for level, one in enumerate((self, *self.finer)):
             for step, name in step_limits(one, speed, acceleration):
-                yield step / one.pace, name
+                yield level if self.finer else None, step / one.pace, name
 
 
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:

@@ -9,6 +9,7 @@ from mpi4py import MPI
 
 from psph.case import load
 from psph.errors import Refused
+from psph.kinds import count_of
 from psph.matter.soil import Soils
 from psph.output.ledger import Ledger
 from psph.runs.absent import absent
@@ -225,3 +226,37 @@ def test_the_page_has_what_a_user_reads_first():
     assert not any("because:" in line for line in first)
     told = "\n".join(first)
     assert all(word in told for word in ("pontoon.seaward", "period 2.27 s", "Gravity", "run time", "MiB"))
+
+
+REFINED = """
+[[space.refine]]
+shape.box = { lower = [0.5, -0.4], upper = [1.4, 1.0] }
+factor = 4
+front = "x.upper"
+"""
+
+
+def test_sizes_are_told_by_their_levels_and_materials_by_the_names_of_the_case(tmp_path):
+    """Not by the groups that finer ones and those who follow are within psph."""
+    head, keys, rest = TANK.partition("[time]")
+    text = f"{head}{REFINED}{keys}{rest}"
+    for lines in (page, explain):
+        said = "\n".join(lines(Scene(draft(tmp_path, text)), 1))
+        assert "materials   water, tank\n" in said and "follows" not in said
+        assert ", spacing 0.1 m, 0.025 m where finest" in said
+        assert "region      space.refine[0], 4 times finer, goes with the front x.upper" in said
+        assert "level 0             its steps are as long as 4 of the finest" in said
+    limits = said[said.index("Time step, from") :]
+    assert all(f"sound (CFL), level {level} " in limits for level in (0, 1, 2))
+    fixed = "\n".join(explain(Scene(draft(tmp_path, text, "time.step=1e-4")), 1))
+    assert "time.step             0.0001 s" in fixed and "sound (CFL), level" not in fixed
+
+
+def test_the_particles_of_levels_are_counted(tmp_path):
+    head, keys, rest = TANK.partition("[time]")
+    scene = Scene(draft(tmp_path, f"{head}{REFINED}{keys}{rest}"))
+    told = [
+        int(n.replace(",", "")) for n in re.findall(r"; ([\d,]+) of the particles", "\n".join(page(scene, 1)))
+    ]
+    coarse = Scene(draft(tmp_path, TANK))
+    assert len(told) == 2 and sum(told) + count_of(coarse) == count_of(scene)
