@@ -54,7 +54,7 @@ def study(
 
     found = asked.run(say)
     if comm.rank == 0:
-        sentences = effects_words(named, found) if effects else asked.sentences(found)
+        sentences = effects_words(asked.named(named, found)) if effects else asked.sentences(found)
         say("")
         for line in asked.conclude(found, list(sentences), error, seconds):
             say(line)

@@ -1,11 +1,12 @@
 """The cost of each effect of a case, and the answers without it."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from psph.case.profiles import OFF
 from psph.lab.study.conclusions import MEAN
 from psph.lab.study.ladder import Settings
+from psph.lab.study.numbers import NUMBER
 from psph.lab.study.report import percent
 from psph.lab.study.runs import DONE
 from psph.scene import Scene
@@ -32,20 +33,22 @@ def without_each(case) -> dict[str, Settings]:
 
 def answers(row: dict, base: dict) -> dict[str, float]:
     """How much each answer of a run differs from that of the run with all effects, relative."""
-    names = [n for n in base if n.startswith(MEAN)] or ["kinetic_energy"]
+    names = [n for n in base if n.startswith((MEAN, NUMBER)) and base[n]] or ["kinetic_energy"]
     if not math.isnan(base["error_l2"]):
         names.append("error_l2")
-    return {n.removeprefix(MEAN).replace("_", " "): row[n] / base[n] - 1.0 for n in names if base[n]}
+    changes = {n: row[n] / base[n] - 1.0 for n in names if base[n]}
+    return {n.removeprefix(MEAN).removeprefix(NUMBER).replace("_", " "): by for n, by in changes.items()}
 
 
-def effects_words(named: dict[str, Settings], rows: list[dict]) -> Iterator[str]:
-    """A line or two for each effect; the first of the rows has them all, the others lack one."""
-    base, *lacking = rows
+def effects_words(lacking: Mapping[str, dict]) -> Iterator[str]:
+    """A line or two for each effect: its name, and the row of the run without it; that of all has none."""
+    base = lacking[""]
     if base["status"] != DONE:
         yield f"the case itself does not finish: {base['status']}."
         return
-    for name, row in zip(named, lacking):
-        yield from _words(name, row, base)
+    for name, row in lacking.items():
+        if name:
+            yield from _words(name, row, base)
 
 
 def _words(name: str, row: dict, base: dict) -> Iterator[str]:
@@ -55,7 +58,7 @@ def _words(name: str, row: dict, base: dict) -> Iterator[str]:
         return
     saved = 1.0 - row["seconds"] / base["seconds"]
     changed = answers(row, base)
-    changes = ", ".join(f"{what} by {percent(-by)}" for what, by in changed.items())
+    changes = ", ".join(f"{what} by {percent(0.0 - by)}" for what, by in changed.items())
     yield f"{name}: {percent(max(saved, 0.0))} of the time; it changes {changes or 'no answer'}."
     if all(abs(by) < NOTHING for by in changed.values()):
         yield f"{name}: it changes no answer of this case noticeably; the case does not need it."

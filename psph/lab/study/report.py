@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from psph.lab.study.ladder import SPACING, toml
+from psph.lab.study.ladder import SPACING, name_of, toml
 from psph.output.errors import OutputError
 from psph.output.progress import duration
 
@@ -20,6 +20,9 @@ SHOWN = (
     ("status", "status"),
 )
 """The main columns of a row, shown in tables."""
+
+MOST_KEYS = 4
+"""Keys that vary up to which each has a column; with more a run has its name."""
 
 FINEST_SPACING = "finest_spacing"
 """Column of a row: the smallest spacing of any of its regions, m; shown where some are finer."""
@@ -51,14 +54,17 @@ def write_json(path: Path, study: dict) -> None:
 
 
 def table(rows: Sequence[dict], keys: Sequence[str]) -> tuple[list[str], list[list[str]]]:
-    """Head and body in words: the keys that vary, then the main columns."""
+    """Head and body in words: the keys that vary, or the name of a run, then the main columns."""
     finer = any(FINEST_SPACING in row and row[FINEST_SPACING] < row[SPACING] for row in rows)
     shown = (*(((FINEST_SPACING, "finest (m)"),) if finer else ()), *SHOWN)
-    head = [*keys, *(title for _, title in shown)]
+    given = [{key: row[key] for key in keys if key in row} for row in rows]
+    if many := len(keys) > MOST_KEYS:
+        own = [[name_of(settings, keys)] for settings in given]
+    else:
+        own = [[toml(settings[key]) if key in settings else "" for key in keys] for settings in given]
+    head = [*(["run"] if many else keys), *(title for _, title in shown)]
     return head, [
-        [toml(row[key]) if key in row else "" for key in keys]
-        + [_cell(name, row.get(name), row) for name, _ in shown]
-        for row in rows
+        [*cells, *(_cell(name, row.get(name), row) for name, _ in shown)] for cells, row in zip(own, rows)
     ]
 
 

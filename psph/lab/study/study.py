@@ -1,7 +1,7 @@
 """A study: its runs, their rows, its files."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from psph.case import Case, CaseError, load
@@ -230,6 +230,12 @@ class StudyRuns:
     def concluded(self, rows: list[dict]) -> Conclusions:
         """What the rows tell."""
         return Conclusions(self.case, self.keys, rows)
+
+    def named(self, names: Mapping[str, Settings], rows: list[dict]) -> dict[str, dict]:
+        """The row of each of some settings, by their ``names``, and of none by the name of nothing; without
+        those that are the case as it is, said in another way."""
+        every = {"": {}, **names}
+        return {name: rows[self.every.index(one)] for name, one in every.items() if one in self.every}
 
     def sentences(self, rows: list[dict]) -> Iterator[str]:
         """The conclusions from the rows, in sentences."""

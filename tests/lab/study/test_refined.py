@@ -6,8 +6,11 @@ from drafts import draft
 
 from psph.api import Case, study
 from psph.fields import FLUID
+from psph.lab.study import command
 from psph.lab.study.conclusions import Conclusions
+from psph.lab.study.effects import without_each
 from psph.lab.study.judge import Judge, series_errors
+from psph.lab.study.report import table
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
@@ -158,3 +161,26 @@ def test_errors_by_an_exact_solution_count_each_bit_of_water_once(tmp_path):
     told = results.errors()["velocity_l2"][-1]
     assert told == pytest.approx(series_errors(v, exact, size).l2, rel=1e-6)
     assert told != pytest.approx(series_errors(v, exact).l2, rel=1e-3)
+
+
+def test_each_effect_has_its_own_run_and_what_is_the_case_itself_none(tmp_path, capsys, monkeypatch):
+    """A wall without `continues` is one that continues the first fluid: that run is the case itself."""
+    some = ("dry wall", "gravity", "impact damping")
+    few = {name: keys for name, keys in without_each(draft(tmp_path, TANK)).items() if name in some}
+    assert list(few) == ["dry wall", "impact damping", "gravity"]
+    monkeypatch.setattr(command, "without_each", lambda case: few)
+    case = draft(tmp_path, TANK, "study.error=velocity", "time.end=2e-3")
+    (tmp_path / "as_it_is.toml").write_text(case.to_toml())
+    command.study(alone(), str(tmp_path / "as_it_is.toml"), [], [], False, True, tmp_path / "out", None, None)
+    said = capsys.readouterr().out
+    assert "dry wall:" not in said and "gravity: the case needs it; without it, refused: " in said
+    assert '"hydrostatic": there is no gravity' in said[said.index("gravity: the case needs it") :]
+    assert "impact damping: " in said and "it changes top by " in said and "-0 %" not in said
+
+
+def test_many_keys_are_told_by_the_names_of_runs():
+    keys = [f"physics.{name}" for name in "abcde"]
+    rows = [{"status": "done"}, {"status": "done", keys[1]: "off"}]
+    head, body = table(rows, keys)
+    assert head[0] == "run" and [cells[0] for cells in body] == ["as it is", "b off"]
+    assert table(rows, keys[:4])[0][:4] == keys[:4]

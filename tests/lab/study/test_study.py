@@ -352,11 +352,11 @@ def test_a_run_that_does_not_fit_into_the_memory_does_not_end_the_study(tmp_path
 
 def test_words_of_an_effect_that_a_case_needs():
     base = {"status": "done", "seconds": 2.0, "mean P": 10.0, "error_l2": math.nan}
-    rows = [base, {"status": "it blew up"}, base | {"seconds": 1.0, "mean P": 9.0}]
-    lines = list(effects_words({"gravity": {}, "friction": {}}, rows))
+    rows = {"": base, "gravity": {"status": "it blew up"}, "friction": base | {"seconds": 1.0, "mean P": 9.0}}
+    lines = list(effects_words(rows))
     assert lines[0] == "gravity: the case needs it; without it, it blew up."
     assert lines[1] == "friction: 50 % of the time; it changes P by 10 %."
-    assert list(effects_words({}, [{"status": "it blew up"}]))[0].endswith("does not finish: it blew up.")
+    assert list(effects_words({"": {"status": "it blew up"}}))[0].endswith("does not finish: it blew up.")
 
 
 def test_the_front_holds_what_nothing_beats():
