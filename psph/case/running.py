@@ -105,7 +105,7 @@ class GuardKeys(Table):
         gt=0,
     )
     depth: float = key(
-        "how far a fluid particle may get behind the face of a wall, in spacings",
+        "how far a fluid particle may get behind the face of a wall, in spacings of its own",
         1.0,
         unit="1",
         gt=0,

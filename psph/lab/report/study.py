@@ -7,7 +7,7 @@ from psph.lab.report.sheet import Result, first_run
 from psph.lab.study.conclusions import ladders_of
 from psph.lab.study.ladder import name_of
 from psph.lab.study.report import percent
-from psph.lab.study.study import KEPT, PAGE, PICTURE
+from psph.lab.study.study import KEPT, PAGE, PICTURE, PICTURE_OF
 from psph.output.pictures.names import REPORT
 
 
@@ -23,7 +23,7 @@ def result_of(folder: Path) -> Result | None:
         text=text,
         figure=_figure(kept),
         caption="Error against run time; the mouse shows the settings of a run. Lower left is better.",
-        pictures=[folder / PICTURE],
+        pictures=[folder / PICTURE, *sorted(folder.glob(PICTURE_OF.format("*")))],
         run=first_run(folder),
         out=folder / REPORT,
     )

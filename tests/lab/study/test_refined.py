@@ -6,6 +6,7 @@ from drafts import draft
 
 from psph.api import Case, study
 from psph.fields import FLUID
+from psph.lab.report.page import report
 from psph.lab.study import command
 from psph.lab.study.conclusions import Conclusions
 from psph.lab.study.effects import without_each
@@ -80,6 +81,7 @@ def test_ladders_choices_and_numbers_by_factor(grid):
     assert "factor 1 takes" not in page and "nan" not in page
     for picture in ("study.png", "study.top.png"):
         assert (folder / picture).stat().st_size > 10_000
+    assert "study.top" in report(folder).read_text(encoding="utf-8")
 
 
 def test_with_and_without(tmp_path):
