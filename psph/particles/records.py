@@ -4,7 +4,7 @@ A list names particles that lie scattered.  A record holds in one or two cache l
 a quantity would spread over many; the pair loop turns records into lanes (psph.engine.simd).
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
@@ -41,20 +41,30 @@ class Records:
     ``names`` are the fields that vary and that pairs read of a neighbour; what is no fluid has
     a negative specific volume (:data:`CARRIER`).  ``table`` (columns, width) has the columns of the
     store; a record begins with a cache line, or shares it with one other.
-    ``in_place`` names the field that is shown for another.
+    ``in_place`` names the field that is shown for another.  Numbers of fields that are written ``seldom``
+    are copied again only where :meth:`renew` says so, once :meth:`settle` has been told that all are there.
     Where ``space`` is fixed point all is in single precision, but for positions: whole steps of
     32 bits, modulo their range.
     """
 
-    def __init__(self, store: Store, names: tuple[str, ...], space, in_place: Mapping[str, str] = {}):
-        self.store = store
+    def __init__(
+        self,
+        store: Store,
+        names: tuple[str, ...],
+        space,
+        in_place: Mapping[str, str] = {},
+        seldom: Collection[str] = (),
+    ):
+        self.store, self._seldom, self._settled = store, frozenset(seldom), False
         placed = recorded(names)
         entries = store.view()._fields
         self._seen = {name: in_place.get(name, store.seen_as(name)) for name in entries}
         self._names = tuple(n for n in self._seen.values() if n in placed)
         self._shown = tuple((name, self._seen[name] in self._names) for name in entries)
         rows = [row for name in self._names for row in store.rows[name]]
-        self._rows = np.array(rows, np.uint64)
+        again = [name not in self._seldom for name in self._names for _ in store.rows[name]]
+        self._all = np.array(rows, np.uint64), np.arange(len(rows), dtype=np.uint64)
+        self._again = tuple(numbers[again] for numbers in self._all)
         self._folded = FLAG in names and FLAG not in placed
         self._sign = (
             (store.rows[FLAG].start, rows.index(store.rows[CARRIER].start)) if self._folded else NO_SIGN
@@ -83,30 +93,29 @@ class Records:
 
     def make_room(self) -> None:
         """Room for owned particles and ghosts, after these found new columns."""
+        self._settled = False
         if len(self.table) < self.store.capacity:
-            self.table = _aligned(self.store.capacity, self.width, self._type)
+            self.table = aligned(self.store.capacity, self.width, self._type)
+
+    def settle(self) -> None:
+        """All columns have been filled since there were new ones."""
+        self._settled = True
+
+    def renew(self, written: Collection[str]) -> None:
+        """Fields have been ``written``: where they are among those that seldom are, all are copied again."""
+        self._settled = self._settled and self._seldom.isdisjoint(written)
 
     def fill(self, first: int, last: int) -> None:
         """Bring the records of the columns ``first`` to ``last`` up to date."""
-        data, rows = self.store.data, self._rows
+        told = self.store.data, *(self._again if self._settled else self._all), *self._sign
         if self._fixed:
             whole = self.table.view(np.int32)
-            in_threads(
-                fill_fixed,
-                first,
-                last,
-                data,
-                rows,
-                *self._sign,
-                self._steps_per_metre,
-                self.table,
-                whole,
-            )
+            in_threads(fill_fixed, first, last, *told, self._steps_per_metre, self.table, whole)
         else:
-            in_threads(fill_records, first, last, data, rows, *self._sign, self.table)
+            in_threads(fill_records, first, last, *told, self.table)
 
 
-def _aligned(records: int, width: int, kind) -> np.ndarray:
+def aligned(records: int, width: int, kind) -> np.ndarray:
     """Zeros (records, width) that begin with a cache line."""
     line = LINE // kind.itemsize
     room = np.zeros(records * width + line, kind)
@@ -115,26 +124,27 @@ def _aligned(records: int, width: int, kind) -> np.ndarray:
 
 
 @elementwise
-def fill_records(first, last, data, rows, flag, place, table):
-    """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``.
+def fill_records(first, last, data, rows, places, flag, place, table):
+    """Copy ``data[rows[f], k]`` to ``table[k, places[f]]`` for the columns ``first`` to ``last``.
 
     ``table[k, place]`` is negative where ``data[flag, k]`` is zero, else positive; any with NO_SIGN.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(np.uint64(len(rows))):
-            table[k, f] = data[rows[f], k]
+            table[k, places[f]] = data[rows[f], k]
         _fold(k, data, flag, place, table)
 
 
 @elementwise
-def fill_fixed(first, last, data, rows, flag, place, steps_per_metre, table, whole):
-    """The same in single precision, positions as whole steps; ``whole`` shows the table's bits."""
+def fill_fixed(first, last, data, rows, places, flag, place, steps_per_metre, table, whole):
+    """The same in single precision, positions, which come first, as whole steps; ``whole`` shows the table's
+    bits."""
     axes = np.uint64(len(steps_per_metre))
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(axes):
             whole[k, f] = np.int32(np.int64(np.rint(data[rows[f], k] * steps_per_metre[f])))
         for f in range(axes, np.uint64(len(rows))):
-            table[k, f] = np.float32(data[rows[f], k])
+            table[k, places[f]] = np.float32(data[rows[f], k])
         _fold(k, data, flag, place, table)
 
 

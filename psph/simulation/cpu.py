@@ -23,7 +23,7 @@ from psph.simulation.integrator import kick, kick_drift_predict, settle_given_pr
 from psph.simulation.midway import drift_to_end, kick_to_middle
 from psph.simulation.neighbourhood import Neighbourhood
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
-from psph.simulation.passes import HELD, Pass
+from psph.simulation.passes import HELD, Pass, written_seldom
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
@@ -47,7 +47,8 @@ class Engine:
         self.plan, self.store, self.ledger = plan, store, ledger
         self.neighbourhood = Neighbourhood(scene, plan, store, comm)
         self.domain = self.neighbourhood.domain
-        self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
+        seldom = written_seldom(plan.passes)
+        self.records = [Records(store, one.neighbour_fields, plan.space, {}, seldom) for one in plan.passes]
         rank = Rank(scene, plan, store, self.domain, ledger)
         self.kinds = tuple(work for kind in plan.matter for work in kind.work(rank))
         movers = tuple(work for work in self.kinds if work.rows)
@@ -173,6 +174,9 @@ class Engine:
             if one.settles:
                 self.each(settle_given_pressure, self._rules, self.view(0.0), self.columns())
             stale, self._unsent = (), self._unsent | one.written
+            self.records[one.place].settle()
+            for records in self.records:
+                records.renew(one.written)
         self.neighbourhood.mark()
         for kind in self.kinds:
             kind.after_sums(time, dt)

@@ -158,6 +158,12 @@ def make_passes(
     return (rate._replace(gives=(None, DENSITY_RATE.name), midway=True), *passes, forces)
 
 
+def written_seldom(passes: tuple[Pass, ...]) -> frozenset[str]:
+    """The fields that nothing changes but ``passes`` that do not run in every step."""
+    seldom = {name for one in passes if one.every > 1 and not one.settles for name in one.written}
+    return frozenset(seldom).difference(*(one.written for one in passes if one.every == 1))
+
+
 def _all_of(called) -> frozenset[str]:
     """What effects read of a neighbour in any of their formulas."""
     return frozenset().union(*(call.reads.neighbour for call in called))
