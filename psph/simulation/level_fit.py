@@ -18,9 +18,9 @@ from psph.engine.jit import elementwise
 from psph.formula import helper
 from psph.simulation.least_squares import factor, solve
 from psph.simulation.level_images import is_near
-from psph.simulation.surface_rows import RowsAtRest, borne, weighed
+from psph.simulation.surface_rows import RowsAtRest
 from psph.smoothing import weight
-from psph.vectors import add, at, dot, multiply, nearest_image, put, scale, subtract
+from psph.vectors import add, at, dot, multiply, nearest_image, subtract
 
 FLAT = 0.01
 """Variance of a term of the fit, in spacings, less what terms before it tell, below which it is left out."""
@@ -89,25 +89,6 @@ class Followed(NamedTuple):
     longest: int
 
 
-class OfLeaders(NamedTuple):
-    """The arrays of all columns that are read of those who lead, what forces read, and written of those who
-    follow (columns,)."""
-
-    velocity: Any
-    predicted: Any
-    volume: Any
-    pressure: Any
-    density: Any
-
-
-class AsLed(NamedTuple):
-    """What is read of those who lead and no field: their ``density`` by their volume, kg/m³, and ρ g times
-    the ``depth`` at which their rows bear their pressures, Pa (columns,)."""
-
-    density: np.ndarray
-    depth: np.ndarray
-
-
 class LevelFit(NamedTuple):
     """Room for a fit: the ``terms`` (n, longest) 1, t and tt of entries, those times their ``weight``
     (n, longest), the sums of the products of both, ``square`` (n, n), and ``share`` (n,), what of Σw times
@@ -129,58 +110,28 @@ def room_for(dimensions, order, longest):
 
 
 @elementwise
-def weigh_rows(first, last, length, rows, state, led):
-    """What ``led`` says of the columns from the ``first`` to the one before the ``last``, whose smoothing
-    ``length`` is in m."""
-    for k in range(first, last):
-        led.density[k] = 1.0 / state.volume[k]
-        led.depth[k] = weighed(rows, length[k], state.pressure[k])
-
-
-@elementwise
-def follow(first, last, columns, spacing, leaders, images, weighing, anew, followed, state, led, fall):
-    """Give some ``columns`` (n,) the state of those they follow, from the ``first`` to the one before the
-    ``last``; ``spacing`` (n,) m is that of those, which have ``images`` (psph.simulation.level_images).
-
-    With ``anew`` whom they follow is found first.  Whoever has too few falls, by ``fall`` (dim,) m/s.
-    """
+def find_leaders(first, last, columns, spacing, leaders, images, weighing, followed):
+    """Find whom some ``columns`` (n,) follow, from the ``first`` to the one before the ``last``; ``spacing``
+    (n,) m is that of those, which have ``images`` (psph.simulation.level_images)."""
     room = room_for(len(leaders.position), weighing.order, followed.longest)
     for n in range(first, last):
-        k = np.uint64(columns[n])
-        if anew:
-            find(k, spacing[n], leaders, images, weighing, room, followed, n)
-        if followed.many[n].sum():
-            take_after(k, followed, n, leaders, images, weighing.rows, state, led)
-        else:
-            for d in range(len(fall)):
-                state.velocity[d][k] += fall[d]
-        put(state.predicted, k, at(state.velocity, k))
+        find(np.uint64(columns[n]), spacing[n], leaders, images, weighing, room, followed, n)
 
 
 @helper
 def find(k, spacing, leaders, images, weighing, room, followed, n):
     """Whom ``k`` follows and their shares, by a fit, in row ``n``; nobody where they are too few."""
-    dim, begin, many = len(leaders.position), followed.begin[n], 0
+    dim, begin = len(leaders.position), followed.begin[n]
     column, share, flow = followed.column[begin:], followed.share[begin:], followed.flow[begin:]
-    for m in range(len(images.turn[0])):
-        before = many
-        if is_near(images, m, at(leaders.position, k)):
-            many = take_row(k, spacing, leaders, leaders.own, images, m, weighing, room, column, many)
-            many = take_row(k, spacing, leaders, leaders.others, images, m, weighing, room, column, many)
-        followed.many[n, m] = many - before
+    rows, counts = (leaders.own, leaders.others), followed.many[n]
+    many = take_images(k, spacing, leaders, rows, images, weighing, room, column, 0, counts)
     sum_products(dim, room, many)
     total = room.square[0, 0]
     if total <= TOO_FEW:
-        followed.many[n] = 0
+        counts[:] = 0
         return
-    factor(room.square, FLAT)
-    set_shares(dim, total, room)
+    add_shares(dim, room, share, many)
     linear = part_of(FIRST, total)
-    share[:many] = 0.0
-    for one in range(len(room.share)):
-        of = room.share[one]
-        for entry in range(many):
-            share[entry] += of * room.weight[one, entry]
     for entry in range(many):
         mean = room.weight[0, entry] / total
         flow[entry] = linear * share[entry] + (1.0 - linear) * mean
@@ -193,13 +144,10 @@ def find(k, spacing, leaders, images, weighing, room, followed, n):
 def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many):
     """Put those of walls behind the ``many`` entries of ``k``, and find the shares of both in the flow across
     the walls; none where these are all around."""
-    dim, begin, found = len(leaders.position), followed.begin[n], many
+    dim, begin = len(leaders.position), followed.begin[n]
     column, across = followed.column[begin:], followed.across[begin:]
-    for m in range(len(images.turn[0])):
-        before = found
-        if is_near(images, m, at(leaders.position, k)):
-            found = take_row(k, spacing, leaders, leaders.walls, images, m, weighing, room, column, found)
-        followed.beside[n, m] = found - before
+    rows, counts = (leaders.walls,), followed.beside[n]
+    found = take_images(k, spacing, leaders, rows, images, weighing, room, column, many, counts)
     size = 0.0
     for d in range(dim):
         way = 0.0
@@ -208,19 +156,38 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
         followed.normal[n, d] = way
         size += way * way
     if size <= NO_SIDE * room.weight[0, many:found].sum() ** 2:
-        followed.beside[n] = 0
+        counts[:] = 0
         return
     for d in range(dim):
         followed.normal[n, d] /= np.sqrt(size)
     sum_products(dim, room, found)
+    add_shares(dim, room, across, found)
+
+
+@helper
+def take_images(k, spacing, leaders, rows, images, weighing, room, column, many, counts):
+    """Take those in some ``rows`` of column ``k`` as all ``images`` show them, behind ``many`` entries, and
+    put how many each shows into ``counts`` (images,); returns how many there are then."""
+    for m in range(len(images.turn[0])):
+        before = many
+        if is_near(images, m, at(leaders.position, k)):
+            for lists in rows:
+                many = take_row(k, spacing, leaders, lists, images, m, weighing, room, column, many)
+        counts[m] = many - before
+    return many
+
+
+@helper
+def add_shares(dim, room, share, many):
+    """Set the ``share`` of ``many`` entries in f₀, from the sums of the products of their terms."""
     total = room.square[0, 0]
     factor(room.square, FLAT)
     set_shares(dim, total, room)
-    across[:found] = 0.0
+    share[:many] = 0.0
     for one in range(len(room.share)):
         of = room.share[one]
-        for entry in range(found):
-            across[entry] += of * room.weight[one, entry]
+        for entry in range(many):
+            share[entry] += of * room.weight[one, entry]
 
 
 @helper
@@ -282,55 +249,3 @@ def sum_products(dim, room, many):
             for entry in range(many):
                 total += weights[one, entry] * terms[other, entry]
             room.square[one, other] = total
-
-
-@helper
-def take_after(k, followed, n, leaders, images, rows, state, led):
-    """Column ``k`` gets the sums of the shares of row ``n`` times what each column that it follows has."""
-    density, seen, depth, first = 0.0, 0.0, 0.0, followed.begin[n]
-    velocity = scale(at(state.velocity, k), 0.0)
-    for m in range(len(images.turn[0])):
-        last, flow, moving = first + followed.many[n, m], 0.0, scale(velocity, 0.0)
-        for entry in range(first, last):
-            j, share, part = followed.column[entry], followed.share[entry], followed.flow[entry]
-            density += share * led.density[j]
-            seen += share * state.pressure[j]
-            depth += share * led.depth[j]
-            flow += part
-            moving = add(moving, scale(at(state.predicted, j), part))
-        velocity = add(velocity, multiply(at(images.turn_velocity, m), moving))
-        velocity = add(velocity, scale(at(images.shift_velocity, m), flow))
-        for entry in range(first, last if images.deeper[m] else first):
-            j, share = followed.column[entry], followed.share[entry]
-            x_j = at(leaders.position, j)
-            shown = add(multiply(at(images.turn, m), x_j), at(images.shift, m))
-            beyond = dot(images.weight, subtract(shown, x_j))
-            density += share * beyond * rows.softness
-            seen += share * beyond
-            depth += share * (weighed(rows, leaders.length[j], state.pressure[j] + beyond) - led.depth[j])
-        first = last
-    pressure = borne(rows, leaders.length[k], depth)
-    density += (pressure - seen) * rows.softness
-    state.density[k], state.volume[k], state.pressure[k] = density, 1.0 / density, pressure
-    put(state.velocity, k, velocity)
-    if followed.beside[n].sum():
-        across_walls(k, followed, n, images, state)
-
-
-@helper
-def across_walls(k, followed, n, images, state):
-    """The velocity of column ``k`` across the walls beside row ``n`` becomes that between fluid and these."""
-    first, speed = followed.begin[n], 0.0
-    for lot in (followed.many, followed.beside):
-        for m in range(len(images.turn[0])):
-            last = first + lot[n, m]
-            for entry in range(first, last):
-                j, share = followed.column[entry], followed.across[entry]
-                for d in range(len(state.velocity)):
-                    seen = images.turn_velocity[d][m] * state.predicted[d][j] + images.shift_velocity[d][m]
-                    speed += share * followed.normal[n, d] * seen
-            first = last
-    for d in range(len(state.velocity)):
-        speed -= followed.normal[n, d] * state.velocity[d][k]
-    for d in range(len(state.velocity)):
-        state.velocity[d][k] += followed.normal[n, d] * speed

@@ -16,9 +16,10 @@ from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, find_beside, keep_level, rows_that_name
 from psph.particles.neighbours import empty
 from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
+from psph.simulation.following import Led, OfLeaders, follow, tell_rows
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_faces import FaceShares
-from psph.simulation.level_fit import ORDER, AsLed, Followed, Leaders, OfLeaders, Weighed, follow, weigh_rows
+from psph.simulation.level_fit import ORDER, Followed, Leaders, Weighed, find_leaders
 from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
 from psph.simulation.level_regions import GoingAlong
@@ -82,7 +83,8 @@ class Resizing(Work):
         cell = (scene.spacing / scene.smoothing_length) ** scene.dimensions
         unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
         self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene))
-        self._follow, self._go, self._weigh = map(settled, (follow, go_along, weigh_rows))
+        self._follow, self._go = map(settled, (follow, go_along))
+        self._find, self._tell = map(settled, (find_leaders, tell_rows))
         self._lanes, self._mirrors = rank.plan.space.lanes, rank.plan.mirrors
         if any(plane.motion for plane in rank.plan.planes):
             self._mirrors = self._mirrors._replace(reach=math.inf)  # wherever they go
@@ -210,6 +212,7 @@ class Resizing(Work):
         normal = np.zeros((len(own), store.dimensions))
         size, longest = int(seen.sum()), int(seen.max(initial=0))
         entries = np.empty(size, np.uint32), *np.empty((3, size))
+        self._led = Led(store.dimensions, store.total)
         self._sides = [
             Side(some, one, Followed(begins[some], *many[:, some], normal[some], *entries, longest), every)
             for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
@@ -257,11 +260,14 @@ class Resizing(Work):
         names = "velocity", "predicted_velocity", "specific_volume", "pressure", "density"
         state = OfLeaders(*(self.store[name] for name in names))
         with self.ledger("refine"):
-            led = AsLed(*np.empty((2, len(state.volume))))
-            in_threads(self._weigh, 0, len(led.depth), self._leaders.length, self._weighing.rows, state, led)
             for side in due:
-                steps = side.every * int(self.clock.pace[side.level])
-                self._impose(side, images, state, led, steps * simulation.dt * self.gravity)
+                self._look_for(side, images)
+            led, rows = self._led.rows(), self._weighing.rows
+            in_threads(self._tell, 0, len(led.columns), self._leaders.length, rows, state, led)
+            for side in due:
+                fall = side.every * int(self.clock.pace[side.level]) * simulation.dt * self.gravity
+                whom = self.columns[side.some], self._leaders, images, self._weighing, side.followed
+                in_threads(self._follow, 0, len(whom[0]), *whom, state, led, fall)
 
     def _images(self, mirrors) -> LeaderImages:
         """What ``mirrors`` show of the fluid."""
@@ -271,12 +277,14 @@ class Resizing(Work):
         """Whether any level needs a pass."""
         return bool(self.clock.due(one).any())
 
-    def _impose(self, side: Side, images: LeaderImages, state: OfLeaders, led: AsLed, fall) -> None:
-        """The ``state`` of some, by those whom they have followed since lists were made, or whom they find,
-        by all their ``images``; who has too few gets ``fall`` (dim,) m/s."""
+    def _look_for(self, side: Side, images: LeaderImages) -> None:
+        """Whom a ``side`` follows until there are new lists, of all their ``images``."""
+        if not side.begin():
+            return
         columns, spacing = self.columns[side.some], self._scale[side.some]
-        whom = columns, spacing, self._leaders, images, self._weighing, side.begin(), side.followed
-        in_threads(self._follow, 0, len(columns), *whom, state, led, fall)
+        whom = columns, spacing, self._leaders, images, self._weighing, side.followed
+        in_threads(self._find, 0, len(columns), *whom)
+        self._led.number(side.followed)
 
     def loops(self, one, loop, seen: tuple, sums) -> Iterator[tuple]:
         """A pass level by level."""
