@@ -6,6 +6,8 @@ the same row, without ghost particles, further lists or messages.  In a right-an
 image is seen the same way.
 """
 
+from functools import cache
+
 import numpy as np
 from numba.core import types
 
@@ -134,8 +136,8 @@ def _typed_image(reflection, i, j):
 
 def _image(reflection, i, j):
     widths = (ABSENT if entry is None else len(entry) if isinstance(entry, tuple) else 0 for entry in j)
-    rules = {name: type(rule) for name, rule in reflection.rules._asdict().items()}
-    return _seen(type(j), tuple(widths), rules)(reflection, i, j)
+    rules = reflection.rules
+    return _seen(type(j), tuple(widths), rules._fields, tuple(map(type, rules)))(reflection, i, j)
 
 
 @overload(_image)
@@ -146,11 +148,14 @@ def _typed_image_of(reflection, i, j):
     )
     rules = dict(zip(reflection.instance_class._fields, reflection.types))["rules"]
     kinds = (getattr(kind, "instance_class", type(None)) for kind in rules.types)
-    return _seen(j.instance_class, tuple(widths), dict(zip(rules.instance_class._fields, kinds)))
+    return _seen(j.instance_class, tuple(widths), rules.instance_class._fields, tuple(kinds))
 
 
-def _seen(view, widths: tuple[int, ...], rules: dict[str, type]):
-    """The function (reflection, i, j) → the image of a ``view`` j whose entries have so many components."""
+@cache
+def _seen(view, widths: tuple[int, ...], names: tuple[str, ...], kinds: tuple[type, ...]):
+    """The function (reflection, i, j) → the image of a ``view`` j whose entries have so many components, by
+    the rules of the ``names``, which are of these ``kinds``."""
+    rules = dict(zip(names, kinds))
     dimensions = widths[view._fields.index("position")]
     told = dict(zip(view._fields, widths))
     # Of one matter no loop need read them of a neighbour; of several each image is of its own.

@@ -100,7 +100,7 @@ class FreeParticles(Work):
     def settle(self) -> None:
         """Their columns."""
         store = self.store
-        self.own = store.low + np.flatnonzero(np.isin(store.group[store.inner], self.groups))
+        self.own = store.low + np.flatnonzero(store.of_groups(self.groups))
 
     def advance(self, time: float, dt: float, largest_speed: float) -> None:
         """Kick, drift, predict."""

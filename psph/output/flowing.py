@@ -12,8 +12,12 @@ ALL: tuple[int, ...] = ()
 
 def counted(kinds: np.ndarray, of: tuple[int, ...]) -> np.ndarray:
     """Which groups count, by their ``kinds`` (groups,): those ``of`` these numbers, or ALL that flows."""
-    flows = np.isin(kinds, (FLUID, GAS))
-    return flows & np.isin(np.arange(len(kinds)), of) if of else flows
+    flows = (kinds == FLUID) | (kinds == GAS)
+    if not of:
+        return flows
+    among = np.zeros(len(kinds), bool)
+    among[list(of)] = True
+    return flows & among
 
 
 def groups_named(scene, name: str) -> Iterator[int]:

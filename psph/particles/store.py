@@ -100,6 +100,12 @@ class Store:
         """The kind of the particle in each column."""
         return self.kinds[self.group]
 
+    def of_groups(self, groups) -> np.ndarray:
+        """Which of this rank's particles are of some ``groups`` (owned,)."""
+        among = np.zeros(len(self.kinds), bool)
+        among[list(groups)] = True
+        return among[self.shown("group")]
+
     @property
     def total(self) -> int:
         """Owned particles and ghosts."""

@@ -20,7 +20,7 @@ from psph.output.xdmf import ENDING
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
 from psph.runs.busy import Busy
-from psph.runs.cost import cost_lines
+from psph.runs.cost import Cost, cost_lines, costs
 from psph.runs.disk_check import check_disk
 from psph.runs.experiments import refuse_unfit_experiments
 from psph.runs.folder import alone_in, make_folder, prepare_folder, reopen_folder
@@ -181,7 +181,9 @@ def _simulate(
     whole = time.perf_counter() - stepping
     steps = simulation.steps - first
     if steps:
-        summary = _summary(scene, simulation, record, particles, whole, steps)
+        spent = dict(simulation.ledger.seconds)
+        cost = Cost(whole, steps, costs(plan, scene.layout.periods, spent, whole))
+        summary = _summary(simulation, record, particles, cost)
     else:
         summary = ["no step was left to the end: for a later one, resume with --set time.end=..."]
     for line in summary:
@@ -191,7 +193,7 @@ def _simulate(
     for line in [*measured, *said]:
         say(line)
     if comm.rank == 0 and steps:
-        write_summary(folder, scene, simulation, whole, steps, said)
+        write_summary(folder, scene, simulation, cost, said)
     say(f"wrote {folder}/{case.name}.h5 and {ENDING} ({record.written} frames), {_tables(record)}")
     output = simulation.ledger.seconds["output"]
     took = comm.bcast((compiling, starting - compiling, whole - output, output))
@@ -237,17 +239,14 @@ def _ranks(size: int) -> str:
     return "1 rank" if size == 1 else f"{size} ranks"
 
 
-def _summary(
-    scene, simulation: Simulation, record: Record, particles: int, seconds: float, steps: int
-) -> Iterator[str]:
+def _summary(simulation: Simulation, record: Record, particles: int, cost: Cost) -> Iterator[str]:
     """What the run cost, where the time went on rank 0, and how right it is where that is known."""
-    rate = particles * steps / seconds
+    rate = particles * cost.steps / cost.seconds
     yield (
-        f"{steps:,} steps in {seconds:.1f} s: {rate / 1e6:.2f} M particle-steps/s, "
+        f"{cost.steps:,} steps in {cost.seconds:.1f} s: {rate / 1e6:.2f} M particle-steps/s, "
         f"{simulation.domain.rebuilds} list rebuilds"
     )
-    spent = dict(simulation.ledger.seconds)
-    yield from cost_lines(simulation.plan, scene.layout.periods, spent, seconds)
+    yield from cost_lines(cost.parts, cost.seconds)
     if record.accuracy:
         yield f"error against the exact solution at {simulation.time:.6g} s: " + ", ".join(
             f"{name.replace('_', ' ')} {100.0 * error:.3g} %"

@@ -11,7 +11,7 @@ from psph.engine.jit import processor
 from psph.kinds import count_of
 from psph.output.numbers import extents, in_lines, numbers_in_lines
 from psph.output.reader import Run
-from psph.runs.cost import costs
+from psph.runs.cost import Cost
 from psph.version import __version__
 
 SUMMARY = "summary.json"
@@ -23,21 +23,19 @@ PACKAGES = ("numpy", "numba", "mpi4py", "h5py")
 """Those that results rest on."""
 
 
-def write_summary(folder: Path, scene, simulation, seconds: float, steps: int, said: Iterable[str]) -> None:
+def write_summary(folder: Path, scene, simulation, cost: Cost, said: Iterable[str]) -> None:
     """Leave the summary of the last part of a run in its folder; on one rank.
 
-    ``seconds`` of ``steps`` steps; ``said``: what guards and probes told at the end.  Without it a run is
-    as good: a disk that is full now does not make it fail.
+    ``said``: what guards and probes told at the end.  Without it a run is as good: a disk that is full now
+    does not make it fail.
     """
-    spent = dict(simulation.ledger.seconds)
-    parts = list(costs(simulation.plan, scene.layout.periods, spent))
     told = {
         "header": header(Path(scene.case.file)),
         "ranks": simulation.comm.size,
         "particles": count_of(scene),
-        "steps": steps,
-        "seconds": seconds,
-        "parts": [*parts, ("the rest", seconds - sum(spent.values()))],
+        "steps": cost.steps,
+        "seconds": cost.seconds,
+        "parts": cost.parts,
         "said": list(said),
         "versions": {"psph": __version__, "Python": platform.python_version()}
         | {name: metadata.version(name) for name in PACKAGES},

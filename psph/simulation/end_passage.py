@@ -39,7 +39,7 @@ class Passage:
         follow.  Collective."""
         store, face = self.store, self.face
         plane = face.ride.place(time)
-        behind = np.flatnonzero(np.isin(store.shown("group"), face.groups))
+        behind = np.flatnonzero(store.of_groups(face.groups))
         depth = face.depth(store["position"][face.axis][store.inner], plane)
         deepest = (face.layers + BEYOND) * face.spacing
         fluid = (store.shown("kind") == FLUID) & (depth > 0.0) & (depth < deepest)

@@ -95,12 +95,12 @@ class Buffers(Work):
         """The particles of the buffers, and the fluid in front of each plane, by the places at which lists
         were made: a run that is resumed finds them again."""
         store = self.store
-        groups, fluid = store.shown("group"), store.shown("kind") == FLUID
+        fluid = store.shown("kind") == FLUID
         behind, front = [], []
         for face in self.faces:
             depth = face.depth(store[LISTED][face.axis][store.inner], face.ride.place(self.time))
             near = fluid & (depth > -SEEN * self.dx) & (depth < face.layers * self.dx)
-            behind.append(np.flatnonzero(np.isin(groups, face.groups)))
+            behind.append(np.flatnonzero(store.of_groups(face.groups)))
             front.append(within(face, self.domain, np.flatnonzero(near), LISTED))
         self.behind, self.front = self._standing(behind), self._standing(front)
         self.matter = self._matter()

@@ -1,4 +1,5 @@
-"""Particles of one level of sizes get the state of those whom they follow (:mod:`psph.simulation.level_fit`)."""
+"""Particles get the state of those of other levels of sizes whom they follow, by the shares of a fit
+(:mod:`psph.simulation.level_fit`)."""
 
 from typing import Any, NamedTuple
 

@@ -29,7 +29,7 @@ class DisplacementGauge(NamedTuple):
     def row(self, simulation) -> list[float]:
         """The values, the same on every rank."""
         store = simulation.store
-        columns = np.flatnonzero(np.isin(store.shown("group"), self.groups))
+        columns = np.flatnonzero(store.of_groups(self.groups))
         reference = store.shown("reference")[columns]
         away = nearest(reference - np.array(self.at), simulation.domain.periods)
         moved = gone(simulation, columns) - reference

@@ -39,7 +39,7 @@ class ForceGauge(NamedTuple):
     def row(self, simulation) -> np.ndarray:
         """The values, the same on every rank."""
         store = simulation.store
-        held = np.flatnonzero(np.isin(store.shown("group"), self.groups))
+        held = np.flatnonzero(store.of_groups(self.groups))
         force = store.shown("mass")[held, None] * store.shown("load")[held]
         shared, share = self._shared(simulation)
         bearing, held, force = held, np.concatenate([held, shared]), np.concatenate([force, share])
@@ -64,13 +64,13 @@ class ForceGauge(NamedTuple):
         lose where it is their own, N (n, dim)."""
         store, shares = simulation.store, self.corners.shares(simulation)
         group, ids = store.shown("group"), store.shown("id")
-        rows = np.flatnonzero(np.isin(group, shares.groups))
+        rows = np.flatnonzero(store.of_groups(shares.groups))
         place = np.searchsorted(shares.ids, ids[rows]) % max(len(shares.ids), 1)
         known = shares.ids[place] == ids[rows]
         rows, place = rows[known], place[known]
         force = store.shown("mass")[rows, None] * store.shown("load")[rows]
         axes = axes_of(simulation)[group[rows]]
-        own, share = np.isin(group[rows], self.groups), np.zeros_like(force)
+        own, share = store.of_groups(self.groups)[rows], np.zeros_like(force)
         for axis in range(store.dimensions):
             along = (force * axes[:, :, axis]).sum(axis=1)
             bearer = shares.bearers[place, axis, (along < 0.0).astype(int)]

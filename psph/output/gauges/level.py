@@ -66,10 +66,8 @@ class LevelGauge(NamedTuple):
         store, plan, domain = simulation.store, simulation.plan, simulation.domain
         ends = self._ends(simulation)
         weights = np.zeros((2, self.parts + 1), np.int64)
-        first, last = store.low, store.low + store.owned
         part = np.where(counted(store.kinds, self.of), 0, NEITHER).astype(np.int8)
         part[list(self.walls)] = 1
-        part = part[store.group]
         for m in range(images(plan.mirrors)):
             # An image is as far from a point as the particle from the image of the point.
             seen = (plan.mirrors.reflections[m].seen(x) if m else x for x in ends)
@@ -77,13 +75,21 @@ class LevelGauge(NamedTuple):
             step = scale(subtract(top, foot), 1.0 / self.parts)
             radius = plan.kernel.support / plan.kernel.inverse_h
             around = (plan.kernel, domain.lower, domain.periods, store.view())
+            first, last = self._near(simulation, foot, top, radius)
+            seen = first, last, part[store.group[first:last]]
             for begin, end in stretches(step, self.parts, radius, domain.periods):
                 start = add(foot, scale(step, float(begin))) if begin else foot
-                weigh_line(start, step, radius, *around, first, last, part, weights[:, begin:end])
+                weigh_line(start, step, radius, *around, *seen, weights[:, begin:end])
         fluid, wall = whole_sums(simulation.comm, weights).astype(np.float64) / UNIT
         left = 1.0 - wall
         share = np.where(left > LEAST_LEFT, fluid / np.maximum(left, LEAST_LEFT), 0.0)
         return share if self.buried is None else np.where(self.buried, WITHIN_WALLS, share)
+
+    def _near(self, simulation, foot, top, radius: float) -> tuple[int, int]:
+        """The first owned column, and that after the last, of all within ``radius`` m of the line."""
+        axis = simulation.domain.axis
+        reach = 0.5 * abs(top[axis] - foot[axis]) + radius
+        return simulation.neighbourhood.columns_near(scale(add(foot, top), 0.5), reach)
 
     def _ends(self, simulation) -> tuple[tuple[float, ...], ...]:
         """Foot and top as they are now, m."""
@@ -127,11 +133,12 @@ def weigh_line(foot, step, radius, kernel, lower, periods, view, first, last, pa
     """Add V_j W of columns ``first`` to ``last`` to ``found`` (parts, n), at foot + n step, in UNITs.
 
     ``radius`` m is the support of the kernel, ``lower`` m the corner from which ``periods`` count, ``part``
-    the row of each column, or NEITHER.
+    the row of each of these columns, or NEITHER.
     """
     long2 = dot(step, step)
     for k in range(np.uint64(first), np.uint64(last)):
-        if part[k] != NEITHER:
+        row = part[k - np.uint64(first)]
+        if row != NEITHER:
             j = take(view, k)
             place = inside(at(view.position, k), lower, periods)
             from_foot = nearest_image(subtract(place, foot), periods)
@@ -145,4 +152,4 @@ def weigh_line(foot, step, radius, kernel, lower, periods, view, first, last, pa
                 for n in range(begin, end):
                     x = subtract(from_foot, scale(step, float(n)))
                     share = weight(kernel, math.sqrt(dot(x, x))) * j.mass * j.specific_volume
-                    found[part[k], n] += np.int64(np.rint(share * UNIT))
+                    found[row, n] += np.int64(np.rint(share * UNIT))

@@ -56,8 +56,7 @@ class ReactionGauge(NamedTuple):
     def _on_clamps(self, simulation) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the particles of clamps, and what each has to bear, N (n, dim)."""
         store = simulation.store
-        group = store.shown("group")
-        rows = np.flatnonzero(np.isin(group, self.groups))
+        rows = np.flatnonzero(store.of_groups(self.groups))
         pulled = store.shown("acceleration")[rows] - self._told(simulation, rows)
         force = _true_mass(store)[rows, None] * pulled
         if INERTIA.name in store:  # the solid stands in a fluid

@@ -80,7 +80,7 @@ class SensorGauge(NamedTuple):
     def _of_face(self, simulation, face: SensorFace) -> np.ndarray:
         """What presses on the walls of one spacing, Pa."""
         store, poses = simulation.store, simulation.engine.poses
-        own = np.flatnonzero(np.isin(store.shown("group"), face.groups))
+        own = np.flatnonzero(store.of_groups(face.groups))
         places, inwards = store.shown("position")[own], face.inwards
         periods = simulation.domain.periods
         if self.carrier is not None:

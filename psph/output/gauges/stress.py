@@ -35,7 +35,7 @@ class StressGauge(NamedTuple):
     def row(self, simulation) -> list[float]:
         """The values, the same on every rank."""
         store = simulation.store
-        chosen = np.isin(store.shown("group"), self.groups)
+        chosen = store.of_groups(self.groups)
         places = store.shown("reference" if self.keeps else "position")[chosen]
         places = places if self.keeps else simulation.domain.inside(places)
         away = nearest(places - np.array(self.at), simulation.domain.periods)
