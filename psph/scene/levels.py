@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -52,8 +52,25 @@ BAND = 4.0
 """Spacings of the coarser level, about a border, within which both push on walls and bodies: with 2, and
 shares that have kinks, it would count by up to 1 % of the pressure how rows lie to it."""
 
+WIDE, FADES = 6.0, 2.0
+"""Spacings of the coarser level: in gaps that are narrower both sides have one share, and passes into a share
+for each where they are wider than by the second less."""
+
 AROUND = 3.0
 """Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
+
+
+class Gaps(NamedTuple):
+    """What is across from some faces: the place of another ``beyond`` a gap (n, dim), m, the ``width`` of the
+    gap (n,), m, and how far both are ``facing`` each other, 1 where they do and 0 where not (n,)."""
+
+    beyond: np.ndarray
+    width: np.ndarray
+    facing: np.ndarray
+
+    def of(self, rows: np.ndarray) -> "Gaps":
+        """Those of some rows alone."""
+        return Gaps(*(array[rows] for array in self))
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,15 +142,29 @@ class Levels:
         border = -0.5 * TIE * self.layout.spacing
         return (self.outside(level, middles) < border) & ~(self.outside(level + 1, points) < border)
 
-    def shares(self, level: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def shares(self, level: np.ndarray, points: np.ndarray, gaps: Gaps) -> tuple[np.ndarray, np.ndarray]:
         """The share of a ``level`` (n,) each in what all levels tell together at some ``points`` (n, dim), m:
         they pass from one to the next within BAND spacings about the border (n,); and its gradient, 1/m (n,
-        dim)."""
+        dim).  Both sides of narrow ``gaps`` have the share of the one that is farther inside."""
         found, slope = np.zeros(len(points)), np.zeros(points.shape)
         for one in range(self.count):
             own = np.flatnonzero(level == one)
-            (inner, inwards), (next_finer, to_finer) = (self._within(n, points[own]) for n in (one, one + 1))
+            (inner, inwards), (next_finer, to_finer) = (
+                self._within_gaps(n, points[own], gaps.of(own)) for n in (one, one + 1)
+            )
             found[own], slope[own] = inner - next_finer, inwards - to_finer
+        return found, slope
+
+    def _within_gaps(self, level: int, points: np.ndarray, gaps: Gaps) -> tuple[np.ndarray, np.ndarray]:
+        """What :meth:`_within` says, of the place in ``gaps`` that is farther inside."""
+        found, slope = self._within(level, points)
+        part = gaps.facing * np.clip((WIDE - gaps.width / self.spacing(max(level - 1, 0))) / FADES, 0.0, 1.0)
+        narrow = np.flatnonzero(part > 0.0)
+        if len(narrow):
+            beyond, to_beyond = self._within(level, gaps.beyond[narrow])
+            part = part[narrow] * (beyond > found[narrow])
+            found[narrow] += part * (beyond - found[narrow])
+            slope[narrow] += part[:, None] * (to_beyond - slope[narrow])
         return found, slope
 
     def _within(self, level: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

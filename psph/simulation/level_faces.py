@@ -19,7 +19,7 @@ from psph.scene.forms.form import Form, Room
 from psph.scene.forms.joined import Union
 from psph.scene.forms.make import form_of
 from psph.scene.forms.placed import Map, Moved
-from psph.scene.levels import SHARE, SLOPE, Levels
+from psph.scene.levels import SHARE, SLOPE, Gaps, Levels
 from psph.scene.shapes import bounds
 from psph.work import Rank
 
@@ -78,19 +78,26 @@ class FaceShares:
         level, inside = self._level_of[group[rows]], self._domain.inside(where)
         away = [np.abs(levels.outside(one, inside)) for one in range(1, levels.count)]
         near = np.flatnonzero(np.min(away, axis=0) < NEAR * layout.support + levels.band(1))
-        face, least = where[near], np.full(len(near), np.inf)
+        # Of each the nearest face of all parts, and the nearest of another part.
+        face, least = np.array([where[near]] * 2), np.full((2, len(near)), np.inf)
         normal = np.zeros(face.shape)
         of, flows = self._origin_of[group[rows[near]]], fluid[rows[near]]
         for number in self._faced:
             asked = np.flatnonzero(flows | (of == number))
             away, points, ways = self._nearest(number, where[near[asked]])
-            nearer = away < least[asked]
-            taken = asked[nearer]
-            least[taken], face[taken], normal[taken] = away[nearer], points[nearer], ways[nearer]
-        where[near] = face
-        found, slope = levels.shares(level, self._domain.inside(where))
-        across = sum(slope[near, d] * normal[:, d] for d in range(store.dimensions))
-        slope[near] -= across[:, None] * normal
+            nearer = away < least[0, asked]
+            for array, values in ((least, away), (face, points), (normal, ways)):
+                array[1, asked[nearer]] = array[0, asked[nearer]]
+                array[0, asked[nearer]] = values[nearer]
+            second = ~nearer & (away < least[1, asked])
+            for array, values in ((least, away), (face, points), (normal, ways)):
+                array[1, asked[second]] = values[second]
+        where[near] = face[0]
+        found, slope = levels.shares(
+            level, self._domain.inside(where), self._gaps(where, near, least, face, normal)
+        )
+        across = sum(slope[near, d] * normal[0, :, d] for d in range(store.dimensions))
+        slope[near] -= across[:, None] * normal[0]
         flows = fluid[rows]
         share, along = store[SHARE.name][store.inner], [x[store.inner] for x in store[SLOPE.name]]
         for array, values in zip((share, *along), (found, *slope.T)):
@@ -100,6 +107,14 @@ class FaceShares:
         told = np.zeros(store.owned, bool)
         told[rows] = (found > 0.0) | slope.any(axis=1)
         return told
+
+    def _gaps(self, where: np.ndarray, near: np.ndarray, least, face, normal) -> Gaps:
+        """What is across from the faces at ``where`` (n, dim), m, of those rows that are ``near``: by how far
+        both faces are, ``least`` (2, near), where they are, ``face`` (2, near, dim), and their normals."""
+        beyond, width, facing = where.copy(), np.full(len(where), np.inf), np.zeros(len(where))
+        beyond[near], width[near] = face[1], least.sum(axis=0)
+        facing[near] = np.maximum(-sum(a * b for a, b in zip(*normal.transpose(0, 2, 1))), 0.0)
+        return Gaps(self._domain.inside(beyond), width, facing)
 
     def _nearest(self, number: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """How far some ``points`` (n, dim), m, are from the nearest face of a part of the layout (n,), where

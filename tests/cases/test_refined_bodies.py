@@ -184,6 +184,41 @@ def test_a_plate_with_a_border_along_it_has_the_push_of_both_sides(lower, upper,
     assert np.abs(force - wanted).max() < 0.01 * one_side
 
 
+def in_a_gap(wide, border, axis):
+    """The block so many coarse spacings above the floor, or from the side of the tank, and a border, so many
+    spacings from there, along the gap between them."""
+    lowest, edge = [0.64, 0.32], [-0.16, -0.16]
+    lowest[axis], edge[axis] = 0.04 * wide, 0.04 * border
+    low = f"lower = [{lowest[0]:g}, {lowest[1]:g}]"
+    scene = BOX.replace("lower = [LOWER, 0.0], upper = [1.6, 0.8]", f"lower = {edge}, upper = [1.76, 0.96]")
+    return scene.replace("lower = [0.64, 0.32]", low), 0.64 - lowest[1], 0.96 - lowest[0]
+
+
+@pytest.mark.parametrize(
+    "wide, border, axis", [(2, 0.5, 1), (2, 2.0, 1), (3, 1.0, 1), (3, 1.5, 1), (3, 1.5, 0), (2, 1.0, 0)]
+)
+def test_both_sides_of_a_narrow_gap_have_the_push_of_the_water_in_it(wide, border, axis, tmp_path):
+    """Of the block and the tank, which are two parts."""
+    scene, deep, long = in_a_gap(wide, border, axis)
+    force_x, force_y, _ = lift(tmp_path, "", scene)
+    assert force_y * 0.32**2 / (deep * long) == pytest.approx(1.0, abs=0.004)
+    assert abs(force_x) < 0.004
+
+
+@pytest.mark.parametrize("wide, border, axis", [(3, 1.5, 1), (3, 1.5, 0)])
+def test_they_have_not_where_water_counts_by_the_one_face_nearest_to_it(
+    wide, border, axis, tmp_path, monkeypatch
+):
+    """The control: the water before one side is on one level, that before the other on another."""
+    gaps = FaceShares._gaps
+    monkeypatch.setattr(
+        FaceShares, "_gaps", lambda *told: (one := gaps(*told))._replace(facing=0.0 * one.facing)
+    )
+    scene, deep, long = in_a_gap(wide, border, axis)
+    force_x, force_y, _ = lift(tmp_path, "", scene)
+    assert max(abs(force_y * 0.32**2 / (deep * long) - 1.0), abs(force_x)) > 0.03
+
+
 ROUND = """
 time.end = 0.4
 [space]
