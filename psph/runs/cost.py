@@ -12,7 +12,7 @@ REST = "the rest"
 """What no part of a step was measured as."""
 
 
-class Cost(NamedTuple):
+class Spent(NamedTuple):
     """What ``steps`` steps took, ``seconds``, and its ``parts`` by :func:`costs`."""
 
     seconds: float

@@ -20,7 +20,7 @@ from psph.output.xdmf import ENDING
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
 from psph.runs.busy import Busy
-from psph.runs.cost import Cost, cost_lines, costs
+from psph.runs.cost import Spent, cost_lines, costs
 from psph.runs.disk_check import check_disk
 from psph.runs.experiments import refuse_unfit_experiments
 from psph.runs.folder import alone_in, make_folder, prepare_folder, reopen_folder
@@ -182,7 +182,7 @@ def _simulate(
     steps = simulation.steps - first
     if steps:
         spent = dict(simulation.ledger.seconds)
-        cost = Cost(whole, steps, costs(plan, scene.layout.periods, spent, whole))
+        cost = Spent(whole, steps, costs(plan, scene.layout.periods, spent, whole))
         summary = _summary(simulation, record, particles, cost)
     else:
         summary = ["no step was left to the end: for a later one, resume with --set time.end=..."]
@@ -239,7 +239,7 @@ def _ranks(size: int) -> str:
     return "1 rank" if size == 1 else f"{size} ranks"
 
 
-def _summary(simulation: Simulation, record: Record, particles: int, cost: Cost) -> Iterator[str]:
+def _summary(simulation: Simulation, record: Record, particles: int, cost: Spent) -> Iterator[str]:
     """What the run cost, where the time went on rank 0, and how right it is where that is known."""
     rate = particles * cost.steps / cost.seconds
     yield (

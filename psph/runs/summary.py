@@ -11,7 +11,7 @@ from psph.engine.jit import processor
 from psph.kinds import count_of
 from psph.output.numbers import extents, in_lines, numbers_in_lines
 from psph.output.reader import Run
-from psph.runs.cost import Cost
+from psph.runs.cost import Spent
 from psph.version import __version__
 
 SUMMARY = "summary.json"
@@ -23,7 +23,7 @@ PACKAGES = ("numpy", "numba", "mpi4py", "h5py")
 """Those that results rest on."""
 
 
-def write_summary(folder: Path, scene, simulation, cost: Cost, said: Iterable[str]) -> None:
+def write_summary(folder: Path, scene, simulation, cost: Spent, said: Iterable[str]) -> None:
     """Leave the summary of the last part of a run in its folder; on one rank.
 
     ``said``: what guards and probes told at the end.  Without it a run is as good: a disk that is full now

@@ -38,7 +38,7 @@ class AsLed(NamedTuple):
     columns: np.ndarray
 
 
-class Led:
+class WhoIsLed:
     """Those who are followed by any of the particles of ``dimensions`` in ``total`` columns, numbered as they
     are first met."""
 

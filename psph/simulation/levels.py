@@ -16,7 +16,7 @@ from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, find_beside, keep_level, rows_that_name
 from psph.particles.neighbours import empty
 from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
-from psph.simulation.following import Led, OfLeaders, follow, tell_rows
+from psph.simulation.following import OfLeaders, WhoIsLed, follow, tell_rows
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_faces import FaceShares
 from psph.simulation.level_fit import ORDER, Followed, Leaders, Weighed, find_leaders
@@ -212,7 +212,7 @@ class Resizing(Work):
         normal = np.zeros((len(own), store.dimensions))
         size, longest = int(seen.sum()), int(seen.max(initial=0))
         entries = np.empty(size, np.uint32), *np.empty((3, size))
-        self._led = Led(store.dimensions, store.total)
+        self._led = WhoIsLed(store.dimensions, store.total)
         self._sides = [
             Side(some, one, Followed(begins[some], *many[:, some], normal[some], *entries, longest), every)
             for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
