@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from psph.api.changes import Changes, dotted, nested, texts
 from psph.case.errors import CaseError
-from psph.case.loader import checked, tables_of
+from psph.case.loader import checked, parts_of, tables_of
 
 MESSAGE = re.compile(r"(?P<file>.*?\.toml)(?: with .*?)?: (?:(?P<key>[\w.*\[\]-]+): )?(?P<says>.*)")
 """Of a finding, as the command line prints it."""
@@ -76,15 +76,13 @@ class Case:
         return self._given is not None
 
     def __getitem__(self, key: str) -> Any:
-        """The value of a key such as ``time.end``, defaults included; KeyError where there is none."""
+        """The value of a key such as ``time.end`` or ``space.refine[0].factor``, defaults included; KeyError
+        where there is none."""
         value: Any = self.model
-        for name in key.split("."):
-            inside = (
-                value.get(name, KeyError) if isinstance(value, Mapping) else getattr(value, name, KeyError)
-            )
-            if inside is KeyError:
+        for name in parts_of(key):
+            value = _inside(value, name)
+            if value is KeyError:
                 raise KeyError(f"{self.file}: {key}: no such key in this case")
-            value = inside
         return value
 
     def with_(self, changes: Changes = (), /, **keys: Any) -> "Case":
@@ -174,3 +172,12 @@ def load(path: str | Path, changes: Changes = (), option: str = OPTION) -> Case:
 def _finding(kind: str, line: str) -> Finding:
     found = MESSAGE.fullmatch(line)
     return Finding(kind, found["key"] or "", found["says"], line) if found else Finding(kind, "", line, line)
+
+
+def _inside(value: Any, name: str) -> Any:
+    """What a table or a list has by this name or at this place; KeyError itself where it has none."""
+    if isinstance(value, Mapping):
+        return value.get(name, KeyError)
+    if isinstance(value, tuple) and name.isdigit():
+        return dict(enumerate(value)).get(int(name), KeyError)
+    return getattr(value, name, KeyError)

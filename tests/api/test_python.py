@@ -103,6 +103,12 @@ def test_tables_and_changes_make_the_case_that_a_file_makes(tmp_path):
     assert changed.with_(physics__gravity=None).model.physics.gravity is None
     with pytest.raises(KeyError, match="no such key"):
         case["time.start"]
+    grains = case.with_({"perturbations": [{"position": [0.1, 0.2], "shift": [0.01, 0.0]}]})
+    moved = grains.with_({"perturbations[0].shift[1]": 0.02})
+    assert grains["perturbations[0].shift"] == (0.01, 0.0) and moved["perturbations.0.shift.1"] == 0.02
+    for key in ("perturbations[1]", "perturbations.first"):
+        with pytest.raises(KeyError, match="no such key in this case"):
+            grains[key]
 
 
 def test_mistakes_name_file_key_and_change(tmp_path):

@@ -74,9 +74,10 @@ def _ladder_of(folder: Path, kept: dict, case) -> tuple[dict, Ladder | None]:
             return shared, ladder
         different.append((len(keys), keys[0], studied))
     count, key, studied = min(different, key=lambda other: other[0])
+    other = f", not of {case.file}" if kept["case"] != case.file else ""
     more = f" (and {count - 1} other keys differ)" if count > 1 else ""
     raise StudyError(
-        f"explain --study {folder}: holds a study of {kept['case']}, not of {case.file}: {key} is "
+        f"explain --study {folder}: holds a study of {kept['case']}{other}: {key} is "
         f"{_written(studied, key)} there and {_written(own, key)} here{more}; give the folder of a study "
         f"of {case.file}, which {typed('study', case.file)} makes"
     )

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from psph.case import Case, CaseError, load
+from psph.case.errors import dotted
 from psph.engine.jit import SOURCES, processor
 from psph.engine.threads import threads
 from psph.errors import Unbearable
@@ -73,12 +74,15 @@ def conditions(case: Case | None) -> dict[str, object]:
     return keys
 
 
-def _dotted(table: dict, path: str = "") -> Iterator[tuple[str, object]]:
+def _dotted(table: dict, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str, object]]:
     for name, value in table.items():
+        here = (*path, name)
+        if isinstance(value, list) and any(isinstance(one, dict) for one in value):
+            value = dict(enumerate(value))
         if isinstance(value, dict):
-            yield from _dotted(value, f"{path}{name}.")
+            yield from _dotted(value, here)
         else:
-            yield f"{path}{name}", value
+            yield dotted(here), value
 
 
 def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) -> dict:

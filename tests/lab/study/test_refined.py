@@ -5,12 +5,15 @@ import pytest
 from drafts import draft
 
 from psph.api import Case, study
+from psph.case import load
 from psph.fields import FLUID
+from psph.lab.errors import StudyError
 from psph.lab.report.page import report
 from psph.lab.study import command
 from psph.lab.study.conclusions import Conclusions
 from psph.lab.study.effects import without_each
 from psph.lab.study.judge import Judge, series_errors
+from psph.lab.study.prediction import predicted
 from psph.lab.study.report import table
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
@@ -82,6 +85,18 @@ def test_ladders_choices_and_numbers_by_factor(grid):
     for picture in ("study.png", "study.top.png"):
         assert (folder / picture).stat().st_size > 10_000
     assert "study.top" in report(folder).read_text(encoding="utf-8")
+
+
+def test_a_run_of_a_ladder_is_foreseen_by_its_factor(grid):
+    folder, _, _ = grid
+    tank = str(folder.parent / "case.toml")
+    changes = ["study.error=velocity", "space.spacing=0.08"]
+    for factor in (1, 2):
+        own = load(tank, [*changes, f"space.refine[0].factor={factor}"])
+        first, error, time = predicted(folder, own)
+        assert f", factor {factor} on 1 rank" in first and "%" in error and "s (" in time
+    with pytest.raises(StudyError, match=r"space\.refine\[0\]\.factor is [24] there and 8 here"):
+        list(predicted(folder, load(tank, [*changes, "space.refine[0].factor=8"])))
 
 
 def test_with_and_without(tmp_path):
