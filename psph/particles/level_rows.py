@@ -23,12 +23,13 @@ class OwnedRows(NamedTuple):
 
 
 @inside
-def holds_sought(sought, ranges, many):
-    """Whether so ``many`` ranges hold anyone who is ``sought``; true where everyone is."""
+def holding_sought(sought, ranges, least, most):
+    """The ``ranges`` from number ``least`` to before ``most`` where they hold anyone who is ``sought``, or
+    everyone is; else none."""
     found = len(sought) == 0
-    for r in range(many):
+    for r in range(least, most):
         found = found or sought[ranges[r, 1]] > sought[ranges[r, 0]]
-    return found
+    return (least, most) if found else (0, 0)
 
 
 @inside

@@ -14,7 +14,7 @@ from psph.engine.jit import inside, overload, register_jitable, uncounted
 from psph.engine.simd import bits, consecutive, width_of
 from psph.engine.threads import in_rooms, threads
 from psph.particles.lanes import LANES, append_near, consecutive_each
-from psph.particles.level_rows import OwnedRows, holds_sought, looks
+from psph.particles.level_rows import OwnedRows, holding_sought, looks
 from psph.particles.neighbours import Neighbours, empty, entries_for
 from psph.particles.sizes import Sizes
 from psph.particles.store import SPARE
@@ -370,9 +370,10 @@ def fill_levels(first, last, grids, rows, room, ranges, corners):
         many, held = candidates(grids, low, high, rows.own * reach, levels, ranges)
         if many > len(ranges):
             return -np.int64(many)
-        own = of_level(grids, level, ranges, many)
-        many = many if holds_sought(rows.sought, ranges, many) else 0
-        own = own if many else (0, 0)
+        least, most = of_level(grids, level, ranges, many)
+        # By the ranges of a row alone: whether others in the cell look across is known of owned ones only.
+        own = holding_sought(rows.sought, ranges, least, most)
+        every = holding_sought(rows.sought, ranges, 0, many)
         for m in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
             k = np.int64(grids.columns[m])
             row = k - rows.low
@@ -382,7 +383,7 @@ def fill_levels(first, last, grids, rows, room, ranges, corners):
                 done = np.int64(m) - starts[first] + 1
                 guess = (np.int64(end) - begun + held) * starts[len(starts) - 1] // done
                 return max(guess, len(entries)) + held + rows.multiple
-            least, most = (0, many) if rows.across[m] else own
+            least, most = every if rows.across[m] else own
             within2 = rows.own * grids.within2[m]
             begin, end = end, append_row(entries, end, m, within2, grids, ranges, least, most)
             room.begin[row], room.lengths[row] = begin, end - begin

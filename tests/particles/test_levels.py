@@ -83,3 +83,16 @@ def test_a_reach_beyond_a_third_of_a_period_is_told():
         TooLarge, match=r"space.periodic: y is 1 m long, .* give a longer domain \(space.upper\), a smaller"
     ):
         SIZES.cutoff(0.2, (None, 1.0))
+
+
+@pytest.mark.parametrize("across", [False, True])
+def test_whether_a_row_stays_empty_rests_on_its_own_level_alone(across):
+    """Two of a finer level with nobody who is sought around but one coarser; whether a third in their cell looks
+    across is known only where it is owned, so that ranks would fill other rows."""
+    length = np.array([0.5, 0.5, 0.5, 1.0]) / SIZES.reach(1.0)
+    slab = Slab(0, 0.0, 2.0, 0, 2, 2, (None,), (0.0,), 1.0)
+    looks = np.array([False, False, across, False])
+    sought = np.array([0.0, 0.0, 0.0, 1.0])
+    places = (np.array([0.3, 0.32, 0.35, 0.9]),)
+    lists = list_by_levels(empty(0, 0), places, length, looks, SIZES, slab, 1, sought)
+    assert lists.lengths[:2].tolist() == [0, 0]
