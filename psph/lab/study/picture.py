@@ -109,13 +109,15 @@ def _limit(axes, value: Estimate, colour: str) -> None:
 
 
 def _label(axes, row: dict, colour: str, below: bool) -> None:
-    """The spacing of a run beside its point, above or ``below``."""
+    """The spacing of a run beside its point, to the right above or to the left ``below``: errors fall along a
+    curve."""
     if SPACING not in row:
         return
     text = axes.annotate(
         f"dx {toml(row[SPACING])}",
         (row["seconds"], 100.0 * row["error_l2"]),
-        xytext=(5, -11 if below else 5),
+        xytext=(-5, -11) if below else (5, 5),
+        ha="right" if below else "left",
         textcoords="offset points",
         size=8,
         color=colour,
