@@ -44,8 +44,18 @@ def with_own_rows(mirrors: Mirrors | None, columns: int, lists):
     if mirrors is None:
         return None, lists
     own = np.minimum(np.arange(columns + AHEAD), max(columns - 1, 0)).astype(lists.lists.dtype)
-    longer = np.concatenate([lists.lists, own])[: len(lists.lists) + columns]
-    return mirrors._replace(own=np.uint64(len(lists.lists))), lists._replace(lists=longer)
+    longer = lists._replace(lists=_extended(lists.lists, own))
+    return mirrors._replace(own=np.uint64(len(lists.lists))), longer
+
+
+def _extended(entries: np.ndarray, more: np.ndarray) -> np.ndarray:
+    """The ``entries`` and ``more`` behind them, the last of which only serve to be looked ahead into; without
+    a copy where psph.particles.neighbours has left room."""
+    begin, end, whole = len(entries), len(entries) + len(more), entries.base
+    if whole is None or len(whole) < end:
+        whole = np.concatenate([entries, more])
+    whole[begin:end] = more
+    return whole[: end - AHEAD]
 
 
 def images(mirrors: Mirrors | None) -> int:

@@ -91,12 +91,13 @@ class Straying:
     def reach(self) -> bool:
         """Whether the lists reach far enough for where particles stand now; collective."""
         store, since = self.domain.store, self._since
-        share = np.empty(store.owned)
+        share = np.empty(store.owned) if self._sizes.grow else None
         own = tuple(v * since for v in self._drift), self._sizes.support, store.low, share
         told = store["position"], store["listed_position"], store[self._sizes.listed], *own
         tops = np.max(in_threads(stray, store.low, store.low + store.owned, *told), axis=0)
         apart2, most = largest(self.domain.comm, [*tops]).tolist()
-        self.growth = self._sizes.growth_left(share, most)
+        if share is not None:
+            self.growth = self._sizes.growth_left(share, most)
         # Written so that NaN asks for new lists.
         near = apart2 < self.farthest**2
         enough = ENOUGH if self._sizes.grow else self._sizes.least_growth
@@ -123,8 +124,9 @@ class Straying:
         if not self._sizes.grow:
             places = tuple(x[store.inner].copy() for x in store["position"])
             self._look = Look(max(most, across), -narrowest * support, places)
-        found = self._sizes.growth_left(np.maximum(share, across), 0.0)
-        self.growth = np.maximum(self.growth, found)
+        else:
+            found = self._sizes.growth_left(np.maximum(share, across), 0.0)
+            self.growth = np.maximum(self.growth, found)
         return 0.5 * max(most, across)
 
     def _bound(self, look: Look) -> float:

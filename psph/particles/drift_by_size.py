@@ -38,22 +38,23 @@ def shares_moved(data, rows, length, starts, planes, grid) -> tuple[np.ndarray, 
 def stray(first, last, position, listed, length, drift, support, low, share):
     """How far the columns ``first`` to ``last`` are from where they were ``listed``, as a ``share`` (owned,)
     of their support, so many times their ``length``, less the ``drift`` (dim,) m of all.  Owned ones begin at
-    ``low``.
+    ``low``; without room for shares, None, they are not told.
 
     Returns the largest square of such a way, drift and all, m², and the largest share; infinite where one is
     not a number.
     """
-    apart2_max, most = 0.0, 0.0
+    apart2_max, most2 = 0.0, 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         apart2, strayed2, reach = 0.0, 0.0, support * length[k]
         for d in range(len(position)):
             way = position[d][k] - listed[d][k]
             apart2 += way**2
             strayed2 += (way - drift[d]) ** 2
-        own = np.sqrt(strayed2 / reach**2)
-        share[k - np.uint64(low)] = own
-        apart2_max, most = max(apart2_max, apart2), max(most, own if own < np.inf else np.inf)
-    return apart2_max, most
+        own2 = strayed2 / reach**2
+        if share is not None:
+            share[k - np.uint64(low)] = np.sqrt(own2)
+        apart2_max, most2 = max(apart2_max, apart2), max(most2, own2 if own2 < np.inf else np.inf)
+    return apart2_max, np.sqrt(most2)
 
 
 @elementwise

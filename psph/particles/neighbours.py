@@ -16,6 +16,11 @@ ROUNDING = 1e-6
 """Relative error of a distance in single precision, generously."""
 
 
+ROOM = 16
+"""Room behind the entries of lists, as a part of these, for rows of each particle by itself: a row has more
+entries."""
+
+
 class Neighbours(NamedTuple):
     """Row k belongs to owned particle ``low + k``: ``lists[begin[k] : begin[k] + lengths[k]]``.
 
@@ -42,8 +47,9 @@ def empty(owned: int, entries: int) -> Neighbours:
 
 
 def entries_for(count: int) -> np.ndarray:
-    """Zeros, and behind them as many as the pair loop looks ahead."""
-    return np.zeros(count + AHEAD, np.uint32)[:count]
+    """Zeros, and behind them as many as the pair loop looks ahead, and room that takes no memory until
+    somebody writes there (psph.composition.mirrors)."""
+    return np.zeros(count + count // ROOM + AHEAD, np.uint32)[:count]
 
 
 def build(
