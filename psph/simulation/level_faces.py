@@ -13,7 +13,7 @@ import numpy as np
 from psph.composition.reflections import BELOW
 from psph.particles.level_lists import find_beside
 from psph.particles.neighbours import Neighbours
-from psph.physics.motion import is_rigid
+from psph.physics.motion import deforms, is_rigid
 from psph.physics.rigid.pose import PLACE
 from psph.scene.forms.form import Form, Room
 from psph.scene.forms.joined import Union
@@ -51,7 +51,10 @@ class FaceShares:
         origins = [part.origin for part in self._layout.parts]
         self._origin_of, self._fluid_of = np.array(origins), np.array([one.is_fluid for one in species])
         self._loaded = materials.loaded
-        self._faced = [] if self._loaded is None else np.unique(self._origin_of[self._loaded])
+        # Where the faces of a wall that deforms have gone nobody tells.
+        self._bare = np.array([deforms(one.motion) for one in species])
+        faced = [] if self._loaded is None else self._loaded & ~self._bare
+        self._faced = np.unique(self._origin_of[faced])
         self._forms = {int(number): self._form(int(number)) for number in self._faced}
         self._maps: np.ndarray | None = None
         self.places = np.zeros((0, 0, 0))
@@ -92,6 +95,8 @@ class FaceShares:
             second = ~nearer & (away < least[1, asked])
             for array, values in ((least, away), (face, points), (normal, ways)):
                 array[1, asked[second]] = values[second]
+        bare = self._beside_bare(lists, groups)[rows[near]]
+        face[0, bare], normal[0, bare], least[1, bare] = where[near[bare]], 0.0, np.inf
         where[near] = face[0]
         found, slope = levels.shares(
             level, self._domain.inside(where), self._gaps(where, near, least, face, normal)
@@ -107,6 +112,15 @@ class FaceShares:
         told = np.zeros(store.owned, bool)
         told[rows] = (found > 0.0) | slope.any(axis=1)
         return told
+
+    def _beside_bare(self, lists: Neighbours, groups: np.ndarray) -> np.ndarray:
+        """Who is of a wall that deforms, or names one, by the ``groups`` of all columns (owned,): their
+        shares are those at their own places."""
+        store, bare = self._store, self._bare[groups]
+        found = bare[store.inner].copy()
+        if self._bare.any():
+            find_beside(store.owned, store.low, lists, bare, found)
+        return found
 
     def _gaps(self, where: np.ndarray, near: np.ndarray, least, face, normal) -> Gaps:
         """What is across from the faces at ``where`` (n, dim), m, of those rows that are ``near``: by how far

@@ -1,5 +1,7 @@
 """Regions that move with a wall, a body or a front, and regions beside a plane of symmetry."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from cases.heaving import let_go
@@ -16,7 +18,7 @@ from runs.resuming import go_on_alike, keep, steps, taken_up
 from psph.case import load
 from psph.output.gauges import gauges_of
 from psph.scene import Scene
-from psph.simulation import levels
+from psph.simulation import level_faces, levels
 from psph.simulation.level_fit import Leaders
 
 SHAKEN = """
@@ -330,3 +332,50 @@ def test_water_makes_way_for_a_block_that_comes_through_a_border(tmp_path, monke
 
     monkeypatch.setattr(levels, "Leaders", alone)
     assert hardest_push(tmp_path) > 1.22
+
+
+SWEPT = """
+use = ["swinging.py"]
+time.end = 0.5
+[space]
+dimensions = 2
+spacing = 0.04
+refine = [{ shape.box = { lower = [0.8, -0.2], upper = [1.8, 1.0] } }]
+[physics]
+gravity = [0.0, -9.81]
+sound_speed = 35.0
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.6, 0.64] }
+shape.difference.minus = [{ box = { lower = [0.4, 0.24], upper = [0.72, 0.48] } }]
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.16, -0.16], upper = [1.76, 0.96] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.6, 0.96] } }]
+[walls.block]
+shape.box = { lower = [0.4, 0.24], upper = [0.72, 0.48] }
+motion.MOVES = { amplitude = [0.5, 0.0], frequency = 0.2 }
+[gauges.push.force]
+on = ["block"]
+"""
+"""A block that is taken through a border beside it."""
+
+
+def swept(folder, moves):
+    """The mean push on it from 0.3 to 0.5 s, N/m."""
+    (folder / "swinging.py").write_text((Path(__file__).parents[1] / "guests/swinging.py").read_text())
+    case = draft(folder, SWEPT.replace("MOVES", moves))
+    simulation, found = start(case), []
+    [gauge] = gauges_of(Scene(case)).values()
+    while simulation.time < 0.5:
+        simulation.step(0.5)
+        if simulation.time > 0.3:
+            found.append(gauge.row(simulation)[:2])
+    return np.mean(found, axis=0)
+
+
+def test_a_wall_that_deforms_tells_its_push_by_where_it_is(tmp_path, monkeypatch):
+    """As a rigid one that goes the same way.  The control: by its faces as they were drawn."""
+    told, held = swept(tmp_path, "sinusoid"), 0.1 * 9810.0 * 0.32 * 0.24
+    assert np.abs(swept(tmp_path, "swinging") - told).max() < 0.4 * held  # measured 0.30
+    monkeypatch.setattr(level_faces, "deforms", lambda motion: False)
+    assert np.abs(swept(tmp_path, "swinging") - told).max() > 0.8 * held  # 1.02
