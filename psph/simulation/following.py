@@ -53,7 +53,8 @@ class WhoIsLed:
     def rows(self) -> AsLed:
         """Room for the rows of all who have numbers."""
         count = int(self._count[0])
-        numbers = aligned(count, NUMBERS, np.dtype(float)).T
+        # Two at the least: fewer count as contiguous, and loops that are settled read what they saw first.
+        numbers = aligned(max(count, 2), NUMBERS, np.dtype(float)).T
         return AsLed(*numbers[:3], tuple(numbers[3 : 3 + self.dimensions]), self._columns[:count])
 
 
