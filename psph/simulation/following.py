@@ -134,18 +134,19 @@ def take_after(k, followed, n, leaders, images, rows, state, led):
 
 @helper
 def across_walls(k, followed, n, images, state, led):
-    """The velocity of column ``k`` across the walls beside row ``n`` becomes that between fluid and these."""
-    first, speed = followed.begin[n], 0.0
+    """The velocity of column ``k`` across the walls beside row ``n`` becomes that between fluid and these, and
+    all of it as far as these let nothing slip."""
+    first, own, held = followed.begin[n], at(state.velocity, k), followed.held[n]
+    apart, normal = scale(own, -1.0), at(followed.normal, n)
     for lot in (followed.many, followed.beside):
         for m in range(len(images.turn[0])):
-            last = first + lot[n, m]
+            last, flow, moving = first + lot[n, m], 0.0, scale(own, 0.0)
             for entry in range(first, last):
-                j, share = followed.column[entry], followed.across[entry]
-                for d in range(len(state.velocity)):
-                    seen = images.turn_velocity[d][m] * led.velocity[d][j] + images.shift_velocity[d][m]
-                    speed += share * followed.normal[n, d] * seen
+                share = followed.across[entry]
+                flow += share
+                moving = add(moving, scale(at(led.velocity, followed.column[entry]), share))
+            apart = add(apart, multiply(at(images.turn_velocity, m), moving))
+            apart = add(apart, scale(at(images.shift_velocity, m), flow))
             first = last
-    for d in range(len(state.velocity)):
-        speed -= followed.normal[n, d] * state.velocity[d][k]
-    for d in range(len(state.velocity)):
-        state.velocity[d][k] += followed.normal[n, d] * speed
+    change = add(scale(apart, held), scale(normal, (1.0 - held) * dot(normal, apart)))
+    put(state.velocity, k, add(own, change))

@@ -38,7 +38,8 @@ FIRST = 0.6, 0.85
 goes faster than the next is otherwise followed by one that goes faster still: in still water 0.4 m deep that
 grows from 1 mm/s to 30 mm/s in two seconds.  Pressures keep theirs: a mean is that of another depth.
 Beside a wall the velocity across it is that of a fit to fluid and wall: were it a mean of the fluid too,
-water would not make way for a body that comes."""
+water would not make way for a body that comes.  Where the wall lets nothing slip all of it is: were what goes
+along it a mean, a border across a sheared flow would brake it, and the wall bear a tenth more."""
 
 NO_SIDE = 1e-6
 """Square of the mean way to walls, in spacings, below which they are on no side."""
@@ -49,8 +50,8 @@ ORDER = 2
 
 class Leaders(NamedTuple):
     """Who is seen: rows of the ``own`` level, of ``others`` and of ``walls`` beside them, of the particles
-    from column ``low`` on; the smoothing ``length`` of each, m, and its ``position``, m, where it was listed
-    (columns,)."""
+    from column ``low`` on; the smoothing ``length`` of each, m, its ``position``, m, where it was listed, and 1 where
+    it ``holds`` what is beside it (columns,)."""
 
     low: int
     own: Any
@@ -58,6 +59,7 @@ class Leaders(NamedTuple):
     walls: Any
     length: np.ndarray
     position: Any
+    holds: np.ndarray
 
 
 class Weighed(NamedTuple):
@@ -75,13 +77,14 @@ class Followed(NamedTuple):
     """Whom each of some particles follows: from ``begin`` (n,) on the entries that the first image in mirrors
     shows, ``many`` (n, images), then those of the next; behind them on those of walls, ``beside``
     (n, images); the ``column`` of each entry, its ``share`` c in pressure and density, its share in the
-    ``flow`` and in that ``across`` walls, along the unit vector ``normal`` (n, dim).  ``longest`` is the
-    longest row."""
+    ``flow`` and in that ``across`` walls, along the unit vector ``normal``, components (dim,) (n,), and the part ``held``
+    (n,) of these walls along which nothing slips.  ``longest`` is the longest row."""
 
     begin: np.ndarray
     many: np.ndarray
     beside: np.ndarray
-    normal: np.ndarray
+    normal: tuple[np.ndarray, ...]
+    held: np.ndarray
     column: np.ndarray
     share: np.ndarray
     flow: np.ndarray
@@ -148,18 +151,21 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
     column, across = followed.column[begin:], followed.across[begin:]
     rows, counts = (leaders.walls,), followed.beside[n]
     found = take_images(k, spacing, leaders, rows, images, weighing, room, column, many, counts)
-    size = 0.0
+    size, total, held = 0.0, room.weight[0, many:found].sum(), 0.0
     for d in range(dim):
         way = 0.0
         for entry in range(many, found):
             way += room.weight[0, entry] * room.terms[1 + d, entry]
-        followed.normal[n, d] = way
+        followed.normal[d][n] = way
         size += way * way
-    if size <= NO_SIDE * room.weight[0, many:found].sum() ** 2:
+    if size <= NO_SIDE * total**2:
         counts[:] = 0
         return
+    for entry in range(many, found):
+        held += room.weight[0, entry] * leaders.holds[column[entry]]
+    followed.held[n] = held / total
     for d in range(dim):
-        followed.normal[n, d] /= np.sqrt(size)
+        followed.normal[d][n] /= np.sqrt(size)
     sum_products(dim, room, found)
     add_shares(dim, room, across, found)
 

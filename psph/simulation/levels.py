@@ -63,6 +63,7 @@ class Resizing(Work):
         self.mass_of = np.array([one.mass for one in species])
         self.fluid_of = np.array([one.is_fluid for one in species])
         self.follows = np.array([one.follows for one in species])
+        self._holds = np.array([float(one.no_slip and not one.is_fluid) for one in species])
         # Fluid behind an open end neither turns nor divides.
         fluids = [(not one.ends_fluid and one.fluid, one.level, one.mobile) for one in species]
         self._turned = np.array(
@@ -201,7 +202,8 @@ class Resizing(Work):
         self.columns = store.low + own
         for row in (row for name in OF_FORCES for row in store.rows[name]):
             store.data[row, self.columns] = 0.0
-        self._leaders = Leaders(store.low, alike, others, walls, store[LENGTH], listed)
+        holds = self._holds[group]
+        self._leaders = Leaders(store.low, alike, others, walls, store[LENGTH], listed, holds)
         where = np.stack([x[store.inner][own] for x in listed], axis=1)
         self._scale = self.levels.layout.spacing * 0.5 ** self._followed(where, level[self.columns])
         self._aside = self._steps_aside(where, level[self.columns])
@@ -209,12 +211,17 @@ class Resizing(Work):
         images = self._images(self._mirrors)
         seen *= images.shown_to(where)
         begins, many = np.cumsum(seen) - seen, np.zeros((2, len(own), len(images.deeper)), np.int64)
-        normal = np.zeros((len(own), store.dimensions))
+        normal, held = np.zeros((store.dimensions, len(own))), np.zeros(len(own))
         size, longest = int(seen.sum()), int(seen.max(initial=0))
         entries = np.empty(size, np.uint32), *np.empty((3, size))
         self._led = WhoIsLed(store.dimensions, store.total)
         self._sides = [
-            Side(some, one, Followed(begins[some], *many[:, some], normal[some], *entries, longest), every)
+            Side(
+                some,
+                one,
+                Followed(begins[some], *many[:, some], tuple(normal[:, some]), held[some], *entries, longest),
+                every,
+            )
             for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
         ]
 
