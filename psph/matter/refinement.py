@@ -77,9 +77,10 @@ class Refinement(Kind):
 
     @property
     def sizes(self) -> Sizes:
-        """By the level of each particle; only who follows looks at other levels.  Who leads and who divides
-        is found with new lists: nobody strays by more than a third of the narrowest margin until then."""
-        follows = np.array([one.follows for one in self.scene.species])
+        """By the level of each particle; only who follows looks at other levels, as walls may.  Who leads and
+        who divides is found with new lists: nobody strays by more than a third of the narrowest
+        margin until then."""
+        across = np.array([one.follows or not one.is_fluid for one in self.scene.species])
         finest = self.levels.support(self.levels.count - 1)
         return Sizes(
             self.scene.kernel.support,
@@ -87,7 +88,7 @@ class Refinement(Kind):
             LENGTH,
             LENGTH,
             growth=1.0,
-            across=follows,
+            across=across,
             strays=finest,
             least=LEAST_SKIN,
             dear=DEAR,

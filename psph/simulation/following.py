@@ -97,6 +97,18 @@ def follow(first, last, columns, leaders, images, weighing, followed, state, led
         put(state.predicted, k, at(state.velocity, k))
 
 
+@elementwise
+def bear(first, last, columns, leaders, images, weighing, followed, state, led):
+    """Give walls in some ``columns`` (n,) the density and the pressure of those whom they have ``followed``,
+    as ``led`` says, from the ``first`` to the one before the ``last``; whoever has too few keeps its own."""
+    for n in range(first, last):
+        k = np.uint64(columns[n])
+        own = at(state.velocity, k)
+        if followed.many[n].sum():
+            take_after(k, followed, n, leaders, images, weighing.rows, state, led)
+        put(state.velocity, k, own)
+
+
 @helper
 def take_after(k, followed, n, leaders, images, rows, state, led):
     """Column ``k`` gets the sums of the shares of row ``n`` times what each has that it follows."""
@@ -134,8 +146,8 @@ def take_after(k, followed, n, leaders, images, rows, state, led):
 
 @helper
 def across_walls(k, followed, n, images, state, led):
-    """The velocity of column ``k`` across the walls beside row ``n`` becomes that between fluid and these, and
-    all of it as far as these let nothing slip."""
+    """The velocity of column ``k`` across the walls beside row ``n`` becomes that between fluid and these,
+    and all of it as far as these let nothing slip."""
     first, own, held = followed.begin[n], at(state.velocity, k), followed.held[n]
     apart, normal = scale(own, -1.0), at(followed.normal, n)
     for lot in (followed.many, followed.beside):

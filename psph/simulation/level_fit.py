@@ -50,8 +50,8 @@ ORDER = 2
 
 class Leaders(NamedTuple):
     """Who is seen: rows of the ``own`` level, of ``others`` and of ``walls`` beside them, of the particles
-    from column ``low`` on; the smoothing ``length`` of each, m, its ``position``, m, where it was listed, and 1 where
-    it ``holds`` what is beside it (columns,)."""
+    from column ``low`` on; the smoothing ``length`` of each, m, its ``position``, m, where it was listed,
+    and 1 where it ``holds`` what is beside it (columns,)."""
 
     low: int
     own: Any
@@ -77,8 +77,8 @@ class Followed(NamedTuple):
     """Whom each of some particles follows: from ``begin`` (n,) on the entries that the first image in mirrors
     shows, ``many`` (n, images), then those of the next; behind them on those of walls, ``beside``
     (n, images); the ``column`` of each entry, its ``share`` c in pressure and density, its share in the
-    ``flow`` and in that ``across`` walls, along the unit vector ``normal``, components (dim,) (n,), and the part ``held``
-    (n,) of these walls along which nothing slips.  ``longest`` is the longest row."""
+    ``flow`` and in that ``across`` walls, along the unit vector ``normal``, components (dim,) (n,),
+    and the part ``held`` (n,) of these walls along which nothing slips.  ``longest`` is the longest row."""
 
     begin: np.ndarray
     many: np.ndarray

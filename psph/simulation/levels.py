@@ -16,7 +16,7 @@ from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, find_beside, keep_level, rows_that_name
 from psph.particles.neighbours import empty
 from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
-from psph.simulation.following import OfLeaders, WhoIsLed, follow, tell_rows
+from psph.simulation.following import OfLeaders, WhoIsLed, bear, follow, tell_rows
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_faces import FaceShares
 from psph.simulation.level_fit import ORDER, Followed, Leaders, Weighed, find_leaders
@@ -36,11 +36,13 @@ BORN, DIED, GONE, COME = range(4)
 
 
 class Side:
-    """``some`` of those who follow on a ``level``, beside whoever leads or farther off, whom they have
-    ``followed`` since lists were made, and that they do in each ``every``-th step of theirs."""
+    """``some`` of those who follow on a ``level``, walls where they ``stand``, beside whoever leads or
+    farther off, whom they have ``followed`` since lists were made, and that they do in each ``every``-th
+    step of theirs."""
 
-    def __init__(self, some: slice, level: int, followed: Followed, every: int):
+    def __init__(self, some: slice, level: int, followed: Followed, every: int, stand: bool):
         self.some, self.level, self.followed, self.every, self._begun = some, level, followed, every, False
+        self.stand = stand
 
     def begin(self) -> bool:
         """Whether that is still to be found; it is from now on."""
@@ -63,6 +65,8 @@ class Resizing(Work):
         self.mass_of = np.array([one.mass for one in species])
         self.fluid_of = np.array([one.is_fluid for one in species])
         self.follows = np.array([one.follows for one in species])
+        materials = self.plan.materials
+        self._evolves = ~self.fluid_of & materials.bearing & ~materials.given_pressure
         self._holds = np.array([float(one.no_slip and not one.is_fluid) for one in species])
         # Fluid behind an open end neither turns nor divides.
         fluids = [(not one.ends_fluid and one.fluid, one.level, one.mobile) for one in species]
@@ -84,12 +88,12 @@ class Resizing(Work):
         cell = (scene.spacing / scene.smoothing_length) ** scene.dimensions
         unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
         self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene))
-        self._follow, self._go = map(settled, (follow, go_along))
+        self._follow, self._bear, self._go = map(settled, (follow, bear, go_along))
         self._find, self._tell = map(settled, (find_leaders, tell_rows))
         self._lanes, self._mirrors = rank.plan.space.lanes, rank.plan.mirrors
         if any(plane.motion for plane in rank.plan.planes):
             self._mirrors = self._mirrors._replace(reach=math.inf)  # wherever they go
-        self.columns, self._aside = np.zeros(0, np.int64), np.zeros(0)
+        self.columns, self._aside, self._flowing = np.zeros(0, np.int64), np.zeros(0), 0
         self.clock = LevelClock([one.pace for one in (self.plan, *self.plan.finer)], self.level_of)
         self.own_steps = self.clock.own
         self._loops = LevelLoops(self.plan, self.store, self.clock)
@@ -177,7 +181,8 @@ class Resizing(Work):
         store, lists = self.store, self.domain.lists
         listed, of = tuple(store["listed_position"]), Membership(level, leads)
         rows = lists, store.low, store.owned, of
-        others = rows_that_name(*rows, follows, False, 1)
+        stands = self._stands(group, level, listed)
+        others = rows_that_name(*rows, follows | stands, False, 1)
         keep_level(store.owned, store.low, lists, level)
         shares = np.zeros(store.owned, bool)
         if self._loaded is not None:
@@ -185,21 +190,25 @@ class Resizing(Work):
             everyone = lists, store.low, store.owned, Membership(level, fluid)
             pushing = rows_that_name(*everyone, self._loaded[group], True, self._lanes)
             self._loops.push_by(pushing, self._mirrors)
-        alike = rows_that_name(*rows, follows, True, 1)
+        alike = rows_that_name(*rows, follows | stands, True, 1)
         solid = lists, store.low, store.owned, Membership(level, ~fluid)
         walls = rows_that_name(*solid, follows, True, 1)
         beside, inner = np.zeros(store.owned, bool), group[store.inner]
         find_beside(store.owned, store.low, lists, leads, beside)
         beside |= shares
-        following, told = self.follows[inner], self.plan.materials.given_pressure[inner]
+        stands = stands[store.inner]
+        following, told = self.follows[inner] | stands, self.plan.materials.given_pressure[inner]
         part = np.where(following & beside, NEAR, np.where((following | told) & ~beside, FAR, LEADING))
         self._loops.role = (len(PARTS) * level).astype(np.uint8)
         self._loops.role[store.inner] += part.astype(np.uint8)
-        kinds = list(product((1, SELDOM), range(self.levels.count)))
-        own = [following & (beside == (every == 1)) & (level[store.inner] == one) for every, one in kinds]
+        kinds = list(product((False, True), (1, SELDOM), range(self.levels.count)))
+        own = [
+            following & (stands == stand) & (beside == (every == 1)) & (level[store.inner] == one)
+            for stand, every, one in kinds
+        ]
         ends = np.cumsum([0, *map(np.count_nonzero, own)])
         own = np.concatenate([*map(np.flatnonzero, own)])
-        self.columns = store.low + own
+        self.columns, self._flowing = store.low + own, int(np.count_nonzero(~stands[own]))
         for row in (row for name in OF_FORCES for row in store.rows[name]):
             store.data[row, self.columns] = 0.0
         holds = self._holds[group]
@@ -221,9 +230,20 @@ class Resizing(Work):
                 one,
                 Followed(begins[some], *many[:, some], tuple(normal[:, some]), held[some], *entries, longest),
                 every,
+                stand,
             )
-            for (every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
+            for (stand, every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
         ]
+
+    def _stands(self, group: np.ndarray, level: np.ndarray, listed) -> np.ndarray:
+        """Which walls see none of their ``level`` who leads (columns,): their pushes move nobody, so that
+        nothing would hold back a density that summed up the rates of what flows by."""
+        places, found = self.domain.inside(np.stack(listed, axis=1)), np.zeros(len(group), bool)
+        for one in range(self.levels.count):
+            own = np.flatnonzero(self._evolves[group] & (level == one))
+            beyond, finer = (self.levels.outside(n, places[own]) for n in (one, one + 1))
+            found[own] = np.maximum(beyond, -finer) > self.levels.support(one)
+        return found
 
     def _followed(self, where: np.ndarray, level: np.ndarray) -> np.ndarray:
         """The level of those whom particles of a ``level`` (n,) at some places (n, dim), m, follow: the next
@@ -254,7 +274,7 @@ class Resizing(Work):
         view, names = self.store.view(), self.plan.carried
         shown = seen_at(view_of(names)(*(getattr(view, name) for name in names)), largest_speed)
         arrays = self.store["position"], self.store["velocity"]
-        self._go(self.columns, self._aside, dt, self.plan.carriers, shown, *arrays)
+        self._go(self.columns[: self._flowing], self._aside, dt, self.plan.carriers, shown, *arrays)
 
     def impose(self, simulation) -> None:
         """The state of who follows at the new time; collective."""
@@ -274,7 +294,10 @@ class Resizing(Work):
             for side in due:
                 fall = side.every * int(self.clock.pace[side.level]) * simulation.dt * self.gravity
                 whom = self.columns[side.some], self._leaders, images, self._weighing, side.followed
-                in_threads(self._follow, 0, len(whom[0]), *whom, state, led, fall)
+                if side.stand:
+                    in_threads(self._bear, 0, len(whom[0]), *whom, state, led)
+                else:
+                    in_threads(self._follow, 0, len(whom[0]), *whom, state, led, fall)
 
     def _images(self, mirrors) -> LeaderImages:
         """What ``mirrors`` show of the fluid."""

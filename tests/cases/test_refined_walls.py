@@ -1,0 +1,106 @@
+"""Walls in the margin of a region, where nobody feels them, and walls along which nothing slips."""
+
+import numpy as np
+from cases.test_refined import leading
+from drafts import draft
+from gauging import start
+
+from psph.output.gauges import gauges_of
+from psph.scene import Scene
+from psph.simulation import levels
+from psph.simulation.level_fit import Leaders
+
+PAST = """
+time.end = 0.2
+physics.sound_speed = 30.0
+[space]
+dimensions = 2
+spacing = 0.04
+periodic = ["x"]
+lower = [0.0, -0.2]
+upper = [2.0, 1.2]
+refine = [{ shape.box = { lower = [1.0, -0.3], upper = [2.2, 1.5] } }]
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
+shape.difference.minus = [{ box = { lower = [0.84, 0.4], upper = [1.16, 0.6] } }]
+viscosity = 0.01
+velocity = [1.0, 0.0]
+[walls.plates]
+shape.union = [
+    { box = { lower = [0.0, -0.2], upper = [2.0, 0.0] } },
+    { box = { lower = [0.0, 1.0], upper = [2.0, 1.2] } },
+]
+[walls.block]
+shape.box = { lower = [0.84, 0.4], upper = [1.16, 0.6] }
+"""
+"""A stream past a block through whose middle a border goes."""
+
+DRAGGED = """
+time.end = 0.4
+physics.sound_speed = 20.0
+[space]
+dimensions = 2
+spacing = 0.04
+periodic = ["x"]
+lower = [0.0, -0.2]
+upper = [1.6, 1.0]
+refine = REFINE
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.6, 0.8] }
+viscosity = 0.05
+[walls.floor]
+shape.box = { lower = [0.0, -0.2], upper = [1.6, 0.0] }
+no_slip = true
+[walls.lid]
+shape.box = { lower = [0.0, 0.8], upper = [1.6, 1.0] }
+no_slip = true
+velocity = [1.0, 0.0]
+[gauges.lid.force]
+on = ["lid"]
+"""
+"""Water that a lid begins to drag along, with borders across."""
+
+ACROSS = "[{ shape.box = { lower = [0.4, -0.3], upper = [1.2, 1.2] } }]"
+
+
+def stray(folder):
+    """By how much the density of any wall strays from that at rest, over what water does, at 0.1 s."""
+    simulation = start(draft(folder, PAST))
+    while simulation.time < 0.1:
+        simulation.step(0.1)
+    group = simulation.store.group[simulation.store.inner]
+    wall = ~np.array([one.is_fluid for one in simulation.plan.materials.species])[group]
+    density = simulation.store.owned_rows("density").ravel()
+    _, _, pressure, *_ = leading(simulation)
+    return np.abs(density[wall] - 1000.0).max() / (np.abs(pressure).max() / 30.0**2)
+
+
+def test_walls_in_a_margin_have_the_pressure_of_the_water_there(tmp_path, monkeypatch):
+    """The control: their densities go on by rates that nobody's motion holds back; the run blows up at 0.16 s."""
+    assert stray(tmp_path) < 2.0  # measured 1.4
+    monkeypatch.setattr(levels.Resizing, "_stands", lambda work, group, *_: np.zeros(len(group), bool))
+    assert stray(tmp_path) > 5.0  # 11
+
+
+def drag(folder, refine):
+    """The mean force on the lid from 0.2 to 0.4 s, N/m."""
+    folder.mkdir()
+    simulation = start(draft(folder, DRAGGED.replace("REFINE", refine)))
+    [gauge], found = gauges_of(Scene(draft(folder, DRAGGED.replace("REFINE", refine)))).values(), []
+    while simulation.time < 0.4:
+        simulation.step(0.4)
+        found.append((simulation.time, gauge.row(simulation)[0]))
+    times, forces = np.array(found).T
+    return forces[times > 0.2].mean()
+
+
+def test_a_border_across_a_sheared_flow_does_not_brake_it(tmp_path, monkeypatch):
+    """The control: who follows beside the lid is told of what goes across it alone."""
+    told = drag(tmp_path / "coarse", "[]")
+    assert abs(drag(tmp_path / "refined", ACROSS) / told - 1.0) < 0.02  # measured 0.008
+
+    def slippery(*seen):
+        return Leaders(*seen[:-1], np.zeros(len(seen[-1])))
+
+    monkeypatch.setattr(levels, "Leaders", slippery)
+    assert drag(tmp_path / "control", ACROSS) / told > 1.05  # 1.08
