@@ -94,6 +94,11 @@ def follow(first, last, columns, leaders, images, weighing, followed, state, led
         else:
             for d in range(len(fall)):
                 state.velocity[d][k] += fall[d]
+    # In a loop of its own: in one with what few ask for, what all do would take twice the time.
+    for n in range(first, last):
+        k = np.uint64(columns[n])
+        if followed.many[n].sum() and followed.beside[n].sum():
+            across_walls(k, followed, n, images, state, led)
         put(state.predicted, k, at(state.velocity, k))
 
 
@@ -140,8 +145,6 @@ def take_after(k, followed, n, leaders, images, rows, state, led):
     density += (pressure - seen) * rows.softness
     state.density[k], state.volume[k], state.pressure[k] = density, 1.0 / density, pressure
     put(state.velocity, k, velocity)
-    if followed.beside[n].sum():
-        across_walls(k, followed, n, images, state, led)
 
 
 @helper

@@ -104,8 +104,8 @@ def test_the_pace_of_each_level_is_told(tmp_path):
     scene = Scene(draft(tmp_path, STILL.replace("FACTOR", "4")))
     plan = make_plan(scene)
     assert [one.pace for one in (plan, *plan.finer)] == [4, 2, 1]
-    lines = [line for line in explain(scene, 1) if "of those of the finest" in line]
-    assert ["are 4 of" in lines[0], "are 2 of" in lines[1], len(lines)] == [True, True, 2]
+    lines = [line for line in explain(scene, 1) if "of the finest" in line]
+    assert ["as long as 4" in lines[0], "as long as 2" in lines[1], len(lines)] == [True, True, 2]
     limits = dict.fromkeys(name for _, name in plan.step_limits(1.0, 9.81))
     fixed = make_plan(Scene(draft(tmp_path, STILL.replace("FACTOR", "2"), "time.step=1e-4")))
     assert len(limits) > 1 and fixed.longest_step(1.0, 1.0) == (1e-4, "time.step")
