@@ -139,10 +139,13 @@ class Neighbourhood:
     def columns_near(self, point, radius: float) -> tuple[int, int]:
         """The first owned column, and that after the last, between which all stand that are now within
         ``radius`` m of a ``point`` (dim,) m, among others."""
-        seen = (*point, radius)
+        return self.columns_across(point[self.domain.axis], radius)
+
+    def columns_across(self, place: float, reach: float) -> tuple[int, int]:
+        """The same of all that are now within ``reach`` m of a ``place`` m along the slab axis."""
+        seen = (place, reach)
         if seen not in self._columns:
-            place = point[self.domain.axis]
-            self._columns[seen] = self.domain.columns_near(place, radius + self.skin.farthest)
+            self._columns[seen] = self.domain.columns_near(place, reach + self.skin.farthest)
         return self._columns[seen]
 
     def dry_beside_fluid(self, first: int, last: int) -> Iterator[tuple[np.ndarray, Neighbours]]:

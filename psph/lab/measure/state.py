@@ -209,4 +209,9 @@ class _Everywhere:
                 f"{state.run.path}: frames hold no {WET_MARK}, and walls near ({where}) may be wet or dry; "
                 f"a run stores it with {STORE.format(WET_MARK)}"
             )
-        return state.store.low, state.store.low + state.store.owned
+        return self.columns_across(0.0, radius)
+
+    def columns_across(self, place: float, reach: float) -> tuple[int, int]:
+        """The first column, and that after the last: of all, wherever they are along the slab axis."""
+        store = self._state.store
+        return store.low, store.low + store.owned

@@ -89,7 +89,7 @@ class LevelGauge(NamedTuple):
         """The first owned column, and that after the last, of all within ``radius`` m of the line."""
         axis = simulation.domain.axis
         reach = 0.5 * abs(top[axis] - foot[axis]) + radius
-        return simulation.neighbourhood.columns_near(scale(add(foot, top), 0.5), reach)
+        return simulation.neighbourhood.columns_across(0.5 * (foot[axis] + top[axis]), reach)
 
     def _ends(self, simulation) -> tuple[tuple[float, ...], ...]:
         """Foot and top as they are now, m."""

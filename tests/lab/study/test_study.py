@@ -165,7 +165,7 @@ def test_a_stored_study_predicts_a_run_outside_the_fit(done, tmp_path):
     assert "From the study in" in job.stdout and "velocity at the end" in job.stdout
     with pytest.raises(
         StudyError,
-        match=r"of .*wave\.toml, not of .*wave\.toml: fluids\.air\.density is"
+        match=r"holds a study of .*wave\.toml: fluids\.air\.density is"
         r" 1\.0 there and 2\.0 here; give the folder of a study of .*wave\.toml",
     ):
         list(predicted(folder / "out", load(folder / "wave.toml", ["fluids.air.density=2.0"])))
