@@ -41,8 +41,8 @@ class Records:
     ``names`` are the fields that vary and that pairs read of a neighbour; what is no fluid has
     a negative specific volume (:data:`CARRIER`).  ``table`` (columns, width) has the columns of the
     store; a record begins with a cache line, or shares it with one other.
-    ``in_place`` names the field that is shown for another.  Numbers of fields that are written ``seldom``
-    are copied again only where :meth:`renew` says so, once :meth:`settle` has been told that all are there.
+    ``in_place`` names the field that is shown for another.  Fields that are written ``seldom`` are not copied
+    again after :meth:`settle`, until :meth:`renew` is told that one of them has been written.
     Where ``space`` is fixed point all is in single precision, but for positions: whole steps of
     32 bits, modulo their range.
     """
@@ -102,7 +102,7 @@ class Records:
         self._settled = True
 
     def renew(self, written: Collection[str]) -> None:
-        """Fields have been ``written``: where they are among those that seldom are, all are copied again."""
+        """Fields have been ``written``: if any of them seldom is, the next filling copies all numbers."""
         self._settled = self._settled and self._seldom.isdisjoint(written)
 
     def fill(self, first: int, last: int) -> None:

@@ -53,8 +53,8 @@ BAND = 4.0
 shares that have kinks, it would count by up to 1 % of the pressure how rows lie to it."""
 
 WIDE, FADES = 6.0, 2.0
-"""Spacings of the coarser level: in gaps that are narrower both sides have one share, and passes into a share
-for each where they are wider than by the second less."""
+"""Spacings of the coarser level.  Both sides of a gap narrower than WIDE - FADES have one share, those of one
+wider than WIDE have each its own; between the two widths the one passes into the other."""
 
 AROUND = 3.0
 """Supports of a level by which its region is larger than that of the next: a margin, and who is followed."""
