@@ -7,6 +7,9 @@ import numpy as np
 from psph.engine.jit import compiled
 from psph.particles.neighbours import Neighbours, entries_for
 
+NOBODY = np.uint8(255)
+"""No level: of those whom no row names."""
+
 
 class Membership(NamedTuple):
     """Of each column its ``level`` and whether rows may name it: those who lead, or all fluid."""
@@ -23,28 +26,32 @@ def rows_that_name(
 
     They are filled up to a multiple of ``lanes`` with the particle itself; all other rows are empty.
     """
-    most = np.where(asked[low : low + owned], lists.lengths[:owned], 0).astype(np.uint64)
-    room = -(-most // np.uint64(lanes)) * np.uint64(lanes)
-    ends = np.cumsum(room, dtype=np.uint64)
-    lengths = np.zeros(owned, np.uint32)
-    found = Neighbours(ends - room, lengths, entries_for(int(ends[-1]) if owned else 0))
-    name_some(owned, low, lists, of, asked, same, lanes, found)
+    most = np.where(asked[low : low + owned], lists.lengths[:owned], 0).astype(np.int64)
+    room = int((-(-most // lanes) * lanes).sum())
+    # Row by row, so that memory is touched as far as entries go alone.
+    found = Neighbours(np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), entries_for(room))
+    level = of.level.astype(np.uint8)
+    name_some(owned, low, lists, level, np.where(of.named, level, NOBODY), asked, same, lanes, found)
     return found
 
 
 @compiled
-def name_some(owned, low, lists, of, asked, same, lanes, found):
-    """The entries of :func:`rows_that_name`, and how many each row has."""
-    one = np.uint64(1)
+def name_some(owned, low, lists, level, named, asked, same, lanes, found):
+    """The entries of :func:`rows_that_name`, and how many each row has; ``named`` (columns,) are the levels
+    of those whom rows may name, else NOBODY."""
+    end, one = np.uint64(0), np.uint64(1)
     for row in range(np.uint64(owned)):
-        k, begin, end = row + np.uint64(low), lists.begin[row], found.begin[row]
+        k, begin = row + np.uint64(low), lists.begin[row]
+        found.begin[row] = end
         if not asked[k]:
             continue
+        own = level[k]
         for n in range(begin, begin + np.uint64(lists.lengths[row])):
-            j = np.uint64(lists.lists[n])
-            if of.named[j] and (of.level[j] == of.level[k]) == same:
-                found.lists[end] = j
-                end += one
+            # Without a branch: at borders none is foretold.  What is not kept is written over.
+            j = lists.lists[n]
+            of = named[np.uint64(j)]
+            found.lists[end] = j
+            end += np.uint64((of != NOBODY) & ((of == own) == same))
         found.lengths[row] = end - found.begin[row]
         while (end - found.begin[row]) % np.uint64(lanes) != np.uint64(0):
             found.lists[end] = k
@@ -62,18 +69,20 @@ def find_beside(owned, low, lists, leads, beside):
 
 
 @compiled
-def keep_level(owned, low, lists, level):
+def keep_level(owned, low, lists, level, leads, beside):
     """Leave in each row those of its particle's own ``level`` (columns,), in the same order; what is left of
-    it ends with the particle itself."""
-    one = np.uint64(1)
+    it ends with the particle itself.  Rows ``beside`` (owned,) name anyone who ``leads`` (columns,)."""
     for row in range(np.uint64(owned)):
         k, begin = row + np.uint64(low), lists.begin[row]
         end, kept = begin + np.uint64(lists.lengths[row]), begin
+        own, seen = level[k], False
         for n in range(begin, end):
-            j = np.uint64(lists.lists[n])
-            if level[j] == level[k]:
-                lists.lists[kept] = j
-                kept += one
+            j = lists.lists[n]
+            alike = level[np.uint64(j)] == own
+            lists.lists[kept] = j
+            kept += np.uint64(alike)
+            seen |= alike & leads[np.uint64(j)]
         for n in range(kept, end):
             lists.lists[n] = k
         lists.lengths[row] = kept - begin
+        beside[row] = seen

@@ -23,13 +23,21 @@ class OwnedRows(NamedTuple):
 
 
 @inside
-def holding_sought(sought, ranges, least, most):
-    """The ``ranges`` from number ``least`` to before ``most`` where they hold anyone who is ``sought``, or
-    everyone is; else none."""
+def holds_sought(sought, ranges, least, most):
+    """Whether ``ranges`` from number ``least`` to before ``most`` hold anyone ``sought``, or all are."""
     found = len(sought) == 0
     for r in range(least, most):
         found = found or sought[ranges[r, 1]] > sought[ranges[r, 0]]
-    return (least, most) if found else (0, 0)
+    return found
+
+
+@inside
+def owns(rows, columns, first, last):
+    """Whether the rank owns any of the particles ``first`` to ``last`` of the grids."""
+    found = False
+    for m in range(first, last):
+        found = found or 0 <= np.int64(columns[m]) - rows.low < rows.owned
+    return found
 
 
 @inside

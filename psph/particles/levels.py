@@ -10,41 +10,31 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import inside, overload, register_jitable, uncounted
-from psph.engine.simd import bits, consecutive, width_of
+from psph.engine.jit import compiled, uncounted
 from psph.engine.threads import in_rooms, threads
-from psph.particles.lanes import LANES, append_near, consecutive_each
-from psph.particles.level_rows import OwnedRows, holding_sought, looks
+from psph.particles.lanes import LANES
+from psph.particles.level_candidates import Gathered, append_row, box_around, gather, room_for
+from psph.particles.level_ranges import AXES, BITS, FARTHEST, WIDER, candidates, extent, of_level
+from psph.particles.level_rows import OwnedRows, holds_sought, looks, owns
 from psph.particles.neighbours import Neighbours, empty, entries_for
 from psph.particles.sizes import Sizes
 from psph.particles.store import SPARE
-from psph.vectors import at, dot, nearest_image, subtract
 
-AXES = 3
-"""Axes of a grid; in 1D and 2D the first have one cell."""
+CELLS_A_REACH = {1: 1.0, 2: 1.0, 3: 1.25}
+"""By dimension, how many cells are as wide as the particles of a level reach at the most: of 0.75, 1, 1.25
+and 1.5 the quickest."""
 
-CELLS_A_REACH = 2.0
-"""Cells of a level are so many times narrower than its particles reach at the most: of 1, 1.5, 2 and 3 the
-quickest in 3D."""
+GROWTH = 8
+"""Part of the entries for which there is room besides where there was too little: lists of a gas grow on."""
 
-FARTHEST = 2**20 - 2
-"""Cells from the corner of the domain within which particles have cells of their own; those farther out share
-the outermost."""
+ALL = 2**BITS - 1
+"""The bits of an axis."""
 
-BITS = 21
-"""Of a cell's key for each axis."""
-
-RANGES = 64
-"""Ranges of candidates of a cell for which there is room at first; the guess need not be right."""
+GROUPS = 512
+"""Groups of candidates of a cell for which there is room at first; the guess need not be right."""
 
 SOME = 40
 """Entries of a row for which there is room at first; the guess need not be right."""
-
-UNSIGNED = 2**64 - 1
-"""What is below zero becomes a large number by it, in compiled code and without."""
-
-WIDER = 1.0 + 1e-9
-"""Rounding may put a particle into the next cell."""
 
 
 class Slab(NamedTuple):
@@ -111,66 +101,97 @@ def list_by_levels(
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
-    rows, most = OwnedRows(slab.low, slab.owned, lanes, across, float(sizes.mutual), before), RANGES
+    rows, most = OwnedRows(slab.low, slab.owned, lanes, across, float(sizes.mutual), before), GROUPS
     while True:
-        work = [(np.zeros((most, 2), np.int64), np.zeros((2, AXES))) for _ in range(threads())]
+        work = [work_room(most, len(position)) for _ in range(threads())]
         needed = in_rooms(fill_levels, 0, len(grids.keys), work, grids, rows, room)
         if not any(needed):
             return room
         most = max(most, *(-2 * n for n in needed))
         if max(needed) > 0:
-            room = room._replace(lists=entries_for(max(needed) + max(needed) // SPARE))
+            room = room._replace(lists=entries_for(max(needed) + max(needed) // GROWTH))
 
 
 def grids_of(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
     """The levels of particles at these places."""
     first = AXES - len(position)
     level = np.floor(np.log2(slab.cutoff * WIDER / reach)).astype(np.int64)
-    levels = np.unique(level)
+    lowest = level.min()
+    there = np.bincount(level - lowest) > 0
+    levels, of = lowest + np.flatnonzero(there), (np.cumsum(there) - 1)[level - lowest]
     counts, inverse = np.zeros((len(levels), AXES), np.int64), np.zeros((len(levels), AXES))
-    origin, seen = np.zeros(AXES), np.zeros((AXES, len(reach)))
-    key, of = np.zeros(len(reach), np.int64), np.searchsorted(levels, level)
-    box = np.zeros((len(levels), 2, AXES), np.int64)
+    origin, key, moved = np.zeros(AXES), np.zeros(len(reach), np.int64), None
     for a in range(first):
         key |= FARTHEST << BITS * (AXES - 1 - a)
     for d, (x, period) in enumerate(zip(position, slab.periods)):
-        a, wide = first + d, slab.cutoff * 0.5**levels / CELLS_A_REACH
+        a, wide = first + d, slab.cutoff * 0.5**levels / CELLS_A_REACH[len(position)]
         origin[a] = slab.origin[d]
         if period:
             counts[:, a] = np.ceil(period / wide)  # narrower: no two images of one are candidates
         inverse[:, a] = counts[:, a] / period if period else 1.0 / wide
-        cell = np.nan_to_num((x - origin[a]) * inverse[of, a], nan=0.0)
-        cell = np.floor(np.clip(cell, -FARTHEST, FARTHEST)).astype(np.int64)
-        seen[a] = x
+        # A number where the place is none: it must become that of some cell.
+        cell = np.fmin(np.fmax((x - origin[a]) * inverse[:, a][of], -FARTHEST), FARTHEST)
+        cell = np.floor(cell).astype(np.int64)
         if period:
-            cell = np.clip(cell, 0, counts[of, a] - 1)
+            cell = np.clip(cell, 0, counts[:, a][of] - 1)
         if period and d == slab.axis:
             beyond = _beyond(x, period, slab)
-            cell += beyond * counts[of, a]
-            seen[a] += beyond * period
+            cell += beyond * counts[:, a][of]
+            moved = beyond * period
             counts[:, a] = 0  # ghosts stand where they are seen: it does not go round
         cell = np.clip(cell, -FARTHEST, FARTHEST)
-        box[:, 0, a] = [cell[of == n].min() for n in range(len(levels))]
-        box[:, 1, a] = [cell[of == n].max() for n in range(len(levels))]
         key |= (cell + FARTHEST) << BITS * (AXES - 1 - a)
-    order = np.lexsort((key, of))
-    key, of = key[order], of[order]
+    order = np.concatenate([by_key(key, np.flatnonzero(of == n)) for n in range(len(levels))])
+    key, of, reach = key[order], of[order], reach[order]
     starts = np.flatnonzero(np.concatenate([[True], (np.diff(key) != 0) | (np.diff(of) != 0)]))
+    base, position = np.searchsorted(of[starts], np.arange(len(levels) + 1)), [x[order] for x in position]
+    seen = np.zeros((AXES, len(order)))
+    seen[first:] = position
+    if moved is not None:
+        seen[first + slab.axis] += moved[order]
     return Grids(
         order.astype(np.uint32),
-        seen[:, order],
-        tuple(_padded(x[order]) for x in position),
-        _padded(reach[order] ** 2),
+        seen,
+        tuple(map(_padded, position)),
+        _padded(reach**2),
         key[starts],
         np.append(starts, len(order)),
-        np.searchsorted(of[starts], np.arange(len(levels) + 1)),
+        base,
         inverse,
         origin,
         counts,
-        box,
-        np.maximum.reduceat(reach[order], np.searchsorted(of, np.arange(len(levels)))),
+        _boxes(key[starts], base[:-1]),
+        np.maximum.reduceat(reach, starts[base[:-1]]),
         tuple(slab.periods),
     )
+
+
+def _boxes(keys: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """The lowest and the highest cells (levels, 2, 3), along each axis, of levels whose first is ``base``."""
+    found = np.zeros((len(base), 2, AXES), np.int64)
+    for a in range(AXES):
+        cells = (keys >> BITS * (AXES - 1 - a) & ALL) - FARTHEST
+        found[:, 0, a], found[:, 1, a] = np.minimum.reduceat(cells, base), np.maximum.reduceat(cells, base)
+    return found
+
+
+def by_key(key: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Columns, which rise, by their ``key``, and those of one key in their order."""
+    # What keeps the order of equals takes five times as long; there are few in a cell.
+    found = np.argsort(key[columns])
+    order_equals(key[columns[found]], found)
+    return columns[found]
+
+
+@compiled
+def order_equals(key, found):
+    """Let the entries of ``found`` rise where their ``key``, in order, is the same."""
+    for k in range(1, len(key)):
+        own, m = found[k], k
+        while m > 0 and key[m - 1] == key[k] and found[m - 1] > own:
+            found[m] = found[m - 1]
+            m -= 1
+        found[m] = own
 
 
 def _beyond(x: np.ndarray, period: float, slab: Slab) -> np.ndarray:
@@ -187,173 +208,16 @@ def _padded(values: np.ndarray) -> np.ndarray:
     return np.concatenate([values, np.zeros(LANES)])
 
 
-@inside
-def lower_bound(keys, first, last, key):
-    """The first place from ``first`` on, and before ``last``, whose key is not below this, or ``last``."""
-    step = 1
-    while first + step < last and keys[first + step - 1] < key:
-        first += step
-        step *= 2
-    last = min(last, first + step)
-    while first < last:
-        middle = (first + last) // 2
-        if keys[middle] < key:
-            first = middle + 1
-        else:
-            last = middle
-    return first
-
-
-@register_jitable
-def along_axis(low, high, far, inverse, count):
-    """The first and last cell of an axis between ``far`` before ``low`` and ``far`` behind ``high``, m from
-    its origin, and after how many it goes round; beyond its ends where that is after ``count`` cells, or all
-    of them, and −1."""
-    first, last = (low - far) * inverse, (high + far) * inverse
-    # Comparisons that no NaN passes: it must not become a number of a cell.
-    first = np.int64(np.floor(first)) if first > -FARTHEST else -FARTHEST
-    last = np.int64(np.floor(last)) if last < FARTHEST else FARTHEST
-    if count > 0 and last - first >= count:
-        return np.int64(0), np.int64(count - 1), np.int64(-1)
-    return min(first, FARTHEST), max(last, -FARTHEST), np.int64(count)
-
-
-@inside
-def extent(grids, first, last, low, high):
-    """Write the corners of the box around the particles ``first`` to ``last``, m from the origin, to ``low``
-    and ``high`` (3,); their largest reach, m."""
-    within2 = 0.0
-    for a in range(AXES):
-        low[a], high[a] = np.inf, -np.inf
-    for m in range(first, last):
-        for a in range(AXES):
-            x = grids.seen[a, m] - grids.origin[a]
-            low[a], high[a] = min(low[a], x), max(high[a], x)
-        within2 = max(within2, grids.within2[m])
-    return np.sqrt(within2)
-
-
-@register_jitable
-def around(cell, count):
-    """The cell of an axis that goes round after ``count`` cells, if that is above 0."""
-    return cell % count if count > 0 else cell
-
-
-@register_jitable
-def gap(low, high, cell, inverse, count):
-    """How far a box from ``low`` to ``high``, m from the origin of an axis, is from one of its cells at the
-    least; 0 where the cell has no width, or is one of the outermost."""
-    if inverse == 0.0 or abs(cell) >= FARTHEST or count < 0:
-        return 0.0
-    return max(0.0, cell / inverse - high, low - (cell + 1) / inverse)
-
-
-@inside
-def candidates(grids, low, high, reach, levels, ranges):
-    """Ranges of particles of some ``levels``, from one to before another, in cells around a box, into the
-    rows of ``ranges`` (most, 2), as far as there is room; how many there are, and how many particles they
-    hold at the most."""
-    many, held = 0, 0
-    for level in range(levels[0], levels[1]):
-        n, per, box = grids.counts[level], grids.inverse[level], grids.box[level]
-        far = max(reach, grids.reach[level]) * WIDER
-        first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0])
-        place = grids.base[level]
-        for c0 in range(first0, last0 + 1):
-            row0 = around(c0, n[0])
-            if not box[0, 0] <= row0 <= box[1, 0]:
-                continue
-            left2 = far * far - gap(low[0], high[0], c0, per[0], n0) ** 2
-            first1, last1, n1 = along_axis(low[1], high[1], np.sqrt(max(left2, 0.0)), per[1], n[1])
-            for c1 in range(first1, last1 + 1):
-                row1 = around(c1, n[1])
-                if not box[0, 1] <= row1 <= box[1, 1]:
-                    continue
-                rest2 = left2 - gap(low[1], high[1], c1, per[1], n1) ** 2
-                if rest2 < 0.0:
-                    continue
-                first2, last2, _ = along_axis(low[2], high[2], np.sqrt(rest2), per[2], n[2])
-                line = ((row0 + FARTHEST) << 2 * BITS) + ((row1 + FARTHEST) << BITS)
-                c2 = first2
-                while c2 <= last2:
-                    # Where the line goes round there is a second range, from its other end on.
-                    here = around(c2, n[2])
-                    stop = min(last2 - c2, n[2] - 1 - here) if n[2] > 0 else last2 - c2
-                    key = line + here + FARTHEST
-                    place, close = within(grids, level, place, key, key + stop)
-                    if many < len(ranges):
-                        ranges[many, 0], ranges[many, 1] = grids.starts[place], grids.starts[close]
-                    many += close > place
-                    held += grids.starts[close] - grids.starts[place] + LANES
-                    place = close
-                    c2 += stop + 1
-    return many, held
-
-
-@inside
-def within(grids, level, place, first, last):
-    """The cells of a level from key ``first`` to ``last``: from which on, and before which; they are sought
-    from the cell ``place`` on, unless they come before."""
-    begin, end = grids.base[level], grids.base[level + 1]
-    if place > begin and grids.keys[place - 1] >= first:
-        place = begin
-    found = lower_bound(grids.keys, place, end, first)
-    close = found
-    while close < end and grids.keys[close] <= last:
-        close += 1
-    return found, close
-
-
-@inside
-def of_level(grids, level, ranges, many):
-    """Which of the ``ranges``, from one to before another, are of a level: they come level by level."""
-    first, last = grids.starts[grids.base[level]], grids.starts[grids.base[level + 1]]
-    least, most = 0, many
-    while least < most and ranges[least, 0] < first:
-        least += 1
-    while most > least and ranges[most - 1, 0] >= last:
-        most -= 1
-    return least, most
-
-
-def near_bits(x_i, within2_i, grids, m):
-    """Bit t says whether particle ``m + t`` of the grids lies within its reach of ``x_i``, or within that of
-    this one, whose square is ``within2_i``."""
-    x_ij = nearest_image(subtract(x_i, at(grids.position, m)), grids.periods)
-    return int(dot(x_ij, x_ij) <= max(within2_i, grids.within2[m]))
-
-
-@overload(near_bits)
-def _typed_near_bits(x_i, within2_i, grids, m):
-    def compare(x_i, within2_i, grids, m):
-        x_ij = nearest_image(subtract(x_i, consecutive_each(grids.position, m)), grids.periods)
-        return bits(dot(x_ij, x_ij) <= max(consecutive(grids.within2, m), within2_i))
-
-    return compare
-
-
-@inside
-def append_row(entries, end, m, within2_i, grids, ranges, least, most):
-    """Write the columns of the neighbours of particle ``m`` of the grids behind ``end``, of those in the
-    ``ranges`` from number ``least`` to before ``most``; returns the new end."""
-    x_i, first, one = at(grids.position, m), end, np.uint64(1)
-    for r in range(least, most):
-        stop = np.uint64(ranges[r, 1])
-        for n in range(np.uint64(ranges[r, 0]), stop, width_of(grids.within2)):
-            others = (one << min(np.uint64(LANES), stop - n)) - one
-            ahead = np.uint64((m - n) & UNSIGNED)
-            others &= ~(np.uint64(ahead < np.uint64(LANES)) << ahead % np.uint64(LANES))
-            end = append_near(entries, end, n, near_bits(x_i, within2_i, grids, n) & others)
-    for entry in range(first, end):
-        entries[entry] = grids.columns[entries[entry]]
-    return end
+def work_room(groups: int, dimensions: int) -> tuple:
+    """What a thread works in: room for so many ``groups`` of candidates of a cell."""
+    return np.zeros((groups, 2), np.int64), np.zeros((2, AXES)), room_for(groups, dimensions)
 
 
 @uncounted
-def fill_levels(first, last, grids, rows, room, ranges, corners):
+def fill_levels(first, last, grids, rows, room, ranges, corners, near):
     """Fill the rows of those particles in the cells ``first`` to ``last`` that a rank owns; returns 0, or
-    about how many entries are needed for all, or, with a minus, how many ``ranges`` (most, 2); ``corners``
-    (2, 3) is room too.
+    about how many entries are needed for all, or, with a minus, how many groups of candidates; ``ranges``
+    (groups, 2), ``corners`` (2, 3) and ``near`` are room too.
 
     Cells take the part of the ``room`` that is their part of the particles.
     """
@@ -364,28 +228,39 @@ def fill_levels(first, last, grids, rows, room, ranges, corners):
     for cell in range(first, last):
         while cell >= grids.base[level + 1]:
             level += 1
+        members = starts[cell], starts[cell + 1]
+        if not owns(rows, grids.columns, *members):
+            continue
         # The particles of a cell have the same candidates.
-        reach = extent(grids, starts[cell], starts[cell + 1], low, high)
-        levels = (0, len(grids.reach)) if looks(rows, starts[cell], starts[cell + 1]) else (level, level + 1)
+        reach = extent(grids, *members, low, high)
+        levels = (0, len(grids.reach)) if looks(rows, *members) else (level, level + 1)
         many, held = candidates(grids, low, high, rows.own * reach, levels, ranges)
-        if many > len(ranges):
-            return -np.int64(many)
+        if max(many * LANES, held) > len(ranges) * LANES:
+            return -np.int64(max(many, held // LANES + 1))
         least, most = of_level(grids, level, ranges, many)
         # By the ranges of a row alone: whether others in the cell look across is known of owned ones only.
-        own = holding_sought(rows.sought, ranges, least, most)
-        every = holding_sought(rows.sought, ranges, 0, many)
-        for m in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
+        own = holds_sought(rows.sought, ranges, least, most)
+        every = holds_sought(rows.sought, ranges, 0, many)
+        if every:
+            box, within2 = box_around(low, high, grids.origin, grids.periods), rows.own * reach * reach
+            found = gather(grids, ranges, many, (least, most), members, box, within2, near)
+        else:
+            found = Gathered(np.int64(0), np.int64(0), np.int64(0), np.int64(0))
+        for m in range(np.uint64(members[0]), np.uint64(members[1])):
             k = np.int64(grids.columns[m])
             row = k - rows.low
             if not 0 <= row < rows.owned:
                 continue
-            if np.int64(end) + held + rows.multiple > capacity:
+            if np.int64(end) + found.end + LANES + rows.multiple > capacity:
                 done = np.int64(m) - starts[first] + 1
-                guess = (np.int64(end) - begun + held) * starts[len(starts) - 1] // done
-                return max(guess, len(entries)) + held + rows.multiple
-            least, most = every if rows.across[m] else own
-            within2 = rows.own * grids.within2[m]
-            begin, end = end, append_row(entries, end, m, within2, grids, ranges, least, most)
+                guess = (np.int64(end) - begun + found.end) * starts[len(starts) - 1] // done
+                return max(guess, len(entries)) + found.end + LANES + rows.multiple
+            begin = end
+            if every if rows.across[m] else own:
+                itself = np.uint64(found.itself + np.int64(m) - members[0])
+                part = (np.int64(0), found.end) if rows.across[m] else (found.first, found.last)
+                within2 = rows.own * grids.within2[m]
+                end = append_row(entries, end, itself, within2, near, grids.periods, *part)
             room.begin[row], room.lengths[row] = begin, end - begin
             while (end - begin) % np.uint64(rows.multiple) != np.uint64(0):
                 entries[end] = k

@@ -13,7 +13,7 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import seen_at, view_of
 from psph.parallel.reductions import all_rows, whole_sums
-from psph.particles.level_lists import Membership, find_beside, keep_level, rows_that_name
+from psph.particles.level_lists import Membership, keep_level, rows_that_name
 from psph.particles.neighbours import empty
 from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
 from psph.simulation.following import OfLeaders, WhoIsLed, bear, follow, tell_rows
@@ -183,8 +183,8 @@ class Resizing(Work):
         rows = lists, store.low, store.owned, of
         stands = self._stands(group, level, listed)
         others = rows_that_name(*rows, follows | stands, False, 1)
-        keep_level(store.owned, store.low, lists, level)
-        shares = np.zeros(store.owned, bool)
+        beside, shares = np.zeros((2, store.owned), bool)
+        keep_level(store.owned, store.low, lists, level.astype(np.uint8), leads, beside)
         if self._loaded is not None:
             shares = self._shares.tell(lists)
             everyone = lists, store.low, store.owned, Membership(level, fluid)
@@ -193,9 +193,7 @@ class Resizing(Work):
         alike = rows_that_name(*rows, follows | stands, True, 1)
         solid = lists, store.low, store.owned, Membership(level, ~fluid)
         walls = rows_that_name(*solid, follows, True, 1)
-        beside, inner = np.zeros(store.owned, bool), group[store.inner]
-        find_beside(store.owned, store.low, lists, leads, beside)
-        beside |= shares
+        beside, inner = beside | shares, group[store.inner]
         stands = stands[store.inner]
         following, told = self.follows[inner] | stands, self.plan.materials.given_pressure[inner]
         part = np.where(following & beside, NEAR, np.where((following | told) & ~beside, FAR, LEADING))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from psph.particles import levels
 from psph.particles.levels import Slab, list_by_levels
 from psph.particles.neighbours import empty
 from psph.particles.sizes import GROWTH, Sizes, TooLarge
@@ -49,6 +50,32 @@ def test_lists_have_all_neighbours_and_no_others(dimensions, ratio, periodic):
         assert np.array_equal(np.sort(lists.lists[begin : begin + many]), row)
         assert (lists.lists[begin + many : begin + -(-many // 4) * 4] == k).all()
     assert sum(map(len, expected)) > n // 2
+
+
+def test_too_little_room_is_made_larger(monkeypatch):
+    """Few groups of candidates, and few entries, at first: the same rows in the end."""
+    position, length = cloud(3, 4.0)
+    n = position.shape[1]
+    slab = Slab(0, 0.0, 1.0, 0, n, 0, (None, 1.0, 1.0), (0.0,) * 3, SIZES.reach(length.max()))
+
+    def rows():
+        looks = np.ones(n, np.bool_)
+        lists = list_by_levels(empty(0, 0), tuple(position), length, looks, SIZES, slab, 4)
+        return [lists.lists[b : b + m].tolist() for b, m in zip(lists.begin[:n], lists.lengths[:n])]
+
+    expected = rows()
+    monkeypatch.setattr(levels, "GROUPS", 1)
+    monkeypatch.setattr(levels, "SOME", 1)
+    assert rows() == expected
+
+
+def test_those_of_a_cell_come_in_the_order_of_their_columns():
+    """Sixty at nine places: their keys are the same, and what sorts keys does not keep the order of equals."""
+    key = np.random.default_rng(3).integers(0, 9, 60)
+    columns = np.arange(7, 67)
+    assert levels.by_key(np.concatenate([np.zeros(7, int), key]), columns).tolist() == (
+        columns[np.argsort(key, kind="stable")].tolist()
+    )
 
 
 def test_a_cell_ends_with_its_level():

@@ -12,8 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from psph.engine.jit import compiled
+from psph.engine.jit import uncounted
 from psph.particles import levels
+from psph.particles.level_candidates import box_around, gather
+from psph.particles.level_ranges import candidates, extent, of_level
 from psph.particles.neighbours import empty
 from psph.particles.sizes import GROWTH, Sizes
 
@@ -30,7 +32,7 @@ RATIOS = (1, 2, 10, 100)
 """The largest over the smallest size."""
 
 MANY = 4096
-"""Ranges of candidates of a cell, at the most."""
+"""Groups of candidates of a cell, at the most."""
 
 REPEATS = 5
 """Searches of which the quickest counts."""
@@ -63,19 +65,20 @@ def nests(dimensions: int, ratio: float, side: int, seed: int = 1) -> tuple[np.n
         size, left = size / finer, left / finer
 
 
-@compiled
-def count_candidates(grids):
-    """How many particles all particles of the grids look at."""
-    count, level, ranges = 0, 0, np.empty((MANY, 2), np.int64)
-    low, high = np.empty(levels.AXES), np.empty(levels.AXES)
+@uncounted
+def count_candidates(grids, ranges, corners, near):
+    """How many particles all particles of the grids look at, fillings of registers counted."""
+    count, level, (low, high) = 0, 0, (corners[0], corners[1])
     for cell in range(len(grids.keys)):
         while cell >= grids.base[level + 1]:
             level += 1
-        first, last = grids.starts[cell], grids.starts[cell + 1]
-        reach = levels.extent(grids, first, last, low, high)
-        many, _ = levels.candidates(grids, low, high, reach, (0, len(grids.reach)), ranges)
-        for r in range(many):
-            count += (last - first) * (ranges[r, 1] - ranges[r, 0])
+        members = grids.starts[cell], grids.starts[cell + 1]
+        reach = extent(grids, *members, low, high)
+        many, _ = candidates(grids, low, high, reach, (0, len(grids.reach)), ranges)
+        box = box_around(low, high, grids.origin, grids.periods)
+        own = of_level(grids, level, ranges, many)
+        found = gather(grids, ranges, many, own, members, box, reach * reach, near)
+        count += (members[1] - members[0]) * found.end
     return count
 
 
@@ -96,7 +99,7 @@ def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Co
     tree = quickest(repeats, lambda: cKDTree(x.T).query_ball_point(x.T, reach, return_sorted=False))
     grids = levels.grids_of(list(rows), reach, slab)
     return Cost(
-        count_candidates(grids) / entries,
+        count_candidates(grids, *levels.work_room(MANY, dimensions)) / entries,
         quickest(repeats, by_levels) / entries,
         tree / int((cKDTree(x.T).query_ball_point(x.T, reach, return_length=True) - 1).sum()),
     )
@@ -191,7 +194,7 @@ def table(repeats: int = REPEATS) -> str:
         costs = [cost(dimensions, ratio, side, repeats) for ratio in RATIOS]
         for name, of in (
             ("candidates for each entry of a list", [f"{one.candidates:.1f}" for one in costs]),
-            ("levels, ns an entry", [f"{one.levels:.0f}" for one in costs]),
+            ("levels, ns an entry", [f"{one.levels:.1f}" for one in costs]),
             ("k-d tree of scipy, ns an entry", [f"{one.tree:.0f}" for one in costs]),
         ):
             lines.append(f"| {dimensions}D: {name} | {' | '.join(of)} |")

@@ -1,0 +1,176 @@
+"""What the particles of one cell share: those that may be near any of them, side by side in memory."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.engine.jit import inside, overload, register_jitable, tuple_of, unrolled
+from psph.engine.simd import bits, consecutive, width_of
+from psph.particles.lanes import HOW_MANY, LANES, consecutive_each, keep_entries, keep_lanes
+from psph.particles.level_ranges import AXES, WIDER
+from psph.vectors import at, dot, nearest_image, subtract
+
+PARTS = 3
+"""Candidates of coarser levels, of a cell's own, and of finer ones: each part begins with a register."""
+
+
+class Candidates(NamedTuple):
+    """Those that may be near a cell's particles, in the order of the grids.
+
+    ``position`` are the components of their places, m, ``within2`` the squares of how far they reach, m², and
+    ``columns`` theirs; registers are filled up with places that are NaN, near nobody.
+    """
+
+    position: tuple
+    within2: np.ndarray
+    columns: np.ndarray
+
+
+class Gathered(NamedTuple):
+    """How many candidates there are until ``end``, fillings counted; which of them, from ``first`` to
+    ``last``, are of the cell's own level, and the place ``itself`` of the cell's first particle."""
+
+    end: int
+    first: int
+    last: int
+    itself: int
+
+
+def room_for(groups: int, dimensions: int) -> Candidates:
+    """Room for so many ``groups`` of candidates."""
+    count = (groups + 2 * PARTS) * LANES
+    position = tuple(np.zeros(count) for _ in range(dimensions))
+    return Candidates(position, np.zeros(count), np.zeros(count, np.uint32))
+
+
+def box_around(low, high, origin, periods):
+    """Middle and half the width (dim,), m, of a box from ``low`` to ``high`` (3,), m from the origin."""
+    first = AXES - len(periods)
+    middle = tuple(origin[a] + 0.5 * (low[a] + high[a]) for a in range(first, AXES))
+    return middle, tuple(0.5 * (high[a] - low[a]) for a in range(first, AXES))
+
+
+@overload(box_around)
+def _typed_box_around(low, high, origin, periods):
+    axes = range(AXES - len(periods), AXES)
+    middle = tuple_of(f"origin[{a}] + 0.5 * (low[{a}] + high[{a}])" for a in axes)
+    return unrolled(
+        "low, high, origin, periods",
+        f"return {middle}, {tuple_of(f'0.5 * (high[{a}] - low[{a}])' for a in axes)}",
+    )
+
+
+def outside(x, half):
+    """How far places ``x`` from the middle of a box are beyond its faces, along each axis, m; 0 within."""
+    return tuple(max(abs(a) - b, 0.0) for a, b in zip(x, half))
+
+
+@overload(outside)
+def _typed_outside(x, half):
+    parts = (f"max(abs(x[{d}]) - half[{d}], 0.0)" for d in range(len(half)))
+    return unrolled("x, half", f"return {tuple_of(parts)}")
+
+
+def beside_bits(box, within2, grids, m):
+    """Bit t says whether particle ``m + t`` of the grids is as near the ``box`` as it reaches, or as near as
+    the square root of ``within2``."""
+    away = outside(nearest_image(subtract(at(grids.position, m), box[0]), grids.periods), box[1])
+    return int(dot(away, away) <= WIDER * WIDER * max(within2, grids.within2[m]))
+
+
+@overload(beside_bits)
+def _typed_beside_bits(box, within2, grids, m):
+    def compare(box, within2, grids, m):
+        x = nearest_image(subtract(consecutive_each(grids.position, m), box[0]), grids.periods)
+        away = outside(x, box[1])
+        return bits(dot(away, away) <= max(consecutive(grids.within2, m), within2) * (WIDER * WIDER))
+
+    return compare
+
+
+def near_bits(x_i, within2_i, near, periods, n):
+    """Bit t says whether candidate ``n + t`` lies within its reach of ``x_i``, or within that of this one,
+    whose square is ``within2_i``."""
+    if np.isnan(near.position[0][n]):  # of which Python has no nearest image
+        return 0
+    x_ij = nearest_image(subtract(x_i, at(near.position, n)), periods)
+    return int(dot(x_ij, x_ij) <= max(within2_i, near.within2[n]))
+
+
+@overload(near_bits)
+def _typed_near_bits(x_i, within2_i, near, periods, n):
+    def compare(x_i, within2_i, near, periods, n):
+        x_ij = nearest_image(subtract(x_i, consecutive_each(near.position, n)), periods)
+        return bits(dot(x_ij, x_ij) <= max(consecutive(near.within2, n), within2_i))
+
+    return compare
+
+
+def keep_each(into, end, arrays, first, chosen):
+    """Write of each array the entries ``first + t`` for each bit t that is ``chosen`` from ``end`` on."""
+    if chosen:
+        for kept, array in zip(into, arrays):
+            kept[end] = array[first]
+
+
+@overload(keep_each)
+def _typed_keep_each(into, end, arrays, first, chosen):
+    lines = (
+        f"keep_lanes(into[{d}], end, consecutive(arrays[{d}], first), chosen)" for d in range(len(arrays))
+    )
+    names = {"keep_lanes": keep_lanes, "consecutive": consecutive}
+    return unrolled("into, end, arrays, first, chosen", *lines, **names)
+
+
+@register_jitable
+def fill_up(near, end):
+    """Fill a register up with what is near nobody; the new end."""
+    last = -(-end // LANES) * LANES
+    for n in range(end, last):
+        near.position[0][n] = np.nan
+    return last
+
+
+@inside
+def gather(grids, ranges, many, own, cell, box, within2, near):
+    """Write to ``near`` those in the first ``many`` of the ``ranges`` that are as near the ``box`` around the
+    particles ``cell[0]`` to ``cell[1]`` as they reach themselves, or as the square root of ``within2``, m².
+
+    Ranges from number ``own[0]`` to before ``own[1]`` are of the cell's own level.
+    """
+    end, first, itself, one = np.int64(0), np.int64(0), np.int64(0), np.uint64(1)
+    last = np.int64(0)
+    for r in range(many + 1):
+        if r == own[0]:
+            end = first = fill_up(near, end)
+        if r == own[1]:
+            end = last = fill_up(near, end)
+        begin, stop = (ranges[r, 0], ranges[r, 1]) if r < many else (np.int64(0), np.int64(0))
+        while begin < stop:
+            # The cell's own particles come one after another: their place is where the first of them goes.
+            until = cell[0] if begin < cell[0] < stop else stop
+            if begin == cell[0]:
+                itself = end
+            for m in range(np.uint64(begin), np.uint64(until), width_of(grids.within2)):
+                others = (one << min(np.uint64(LANES), np.uint64(until) - m)) - one
+                chosen = beside_bits(box, within2, grids, m) & others
+                place = np.uint64(end)
+                keep_each(near.position, place, grids.position, m, chosen)
+                keep_entries(near.columns, place, grids.columns, m, chosen, grids.within2)
+                end = np.int64(keep_lanes(near.within2, place, consecutive(grids.within2, m), chosen))
+            begin = until
+    return Gathered(fill_up(near, end), first, last, itself)
+
+
+@inside
+def append_row(entries, end, itself, within2_i, near, periods, first, last):
+    """Write the columns of the neighbours of the candidate ``itself`` behind ``end``, of those from ``first``
+    to ``last``; returns the new end."""
+    x_i, x = at(near.position, itself), near.position[0][itself]
+    near.position[0][itself] = np.nan  # not its own neighbour
+    for n in range(np.uint64(first), np.uint64(last), width_of(near.within2)):
+        chosen = near_bits(x_i, within2_i, near, periods, n)
+        keep_entries(entries, end, near.columns, n, chosen, near.within2)
+        end += HOW_MANY[chosen]
+    near.position[0][itself] = x
+    return end

@@ -1,0 +1,148 @@
+"""Ranges of candidates: the particles of a grid's cells that may be near those of one cell."""
+
+import numpy as np
+
+from psph.engine.jit import inside, register_jitable
+from psph.particles.lanes import LANES
+
+AXES = 3
+"""Axes of a grid; in 1D and 2D the first have one cell."""
+
+FARTHEST = 2**20 - 2
+"""Cells from the corner of the domain within which particles have cells of their own; those farther out share
+the outermost."""
+
+BITS = 21
+"""Of a cell's key for each axis."""
+
+WIDER = 1.0 + 1e-9
+"""Rounding may put a particle into the next cell."""
+
+
+@inside
+def lower_bound(keys, first, last, key):
+    """The first place from ``first`` on, and before ``last``, whose key is not below this, or ``last``."""
+    step = 1
+    while first + step < last and keys[first + step - 1] < key:
+        first += step
+        step *= 2
+    last = min(last, first + step)
+    while first < last:
+        middle = (first + last) // 2
+        if keys[middle] < key:
+            first = middle + 1
+        else:
+            last = middle
+    return first
+
+
+@register_jitable
+def along_axis(low, high, far, inverse, count):
+    """The first and last cell of an axis between ``far`` before ``low`` and ``far`` behind ``high``, m from
+    its origin, and after how many it goes round; beyond its ends where that is after ``count`` cells, or all
+    of them, and −1."""
+    first, last = (low - far) * inverse, (high + far) * inverse
+    # Comparisons that no NaN passes: it must not become a number of a cell.
+    first = np.int64(np.floor(first)) if first > -FARTHEST else -FARTHEST
+    last = np.int64(np.floor(last)) if last < FARTHEST else FARTHEST
+    if count > 0 and last - first >= count:
+        return np.int64(0), np.int64(count - 1), np.int64(-1)
+    return min(first, FARTHEST), max(last, -FARTHEST), np.int64(count)
+
+
+@inside
+def extent(grids, first, last, low, high):
+    """Write the corners of the box around the particles ``first`` to ``last``, m from the origin, to ``low``
+    and ``high`` (3,); their largest reach, m."""
+    within2 = 0.0
+    for a in range(AXES):
+        low[a], high[a] = np.inf, -np.inf
+    for m in range(first, last):
+        for a in range(AXES):
+            x = grids.seen[a, m] - grids.origin[a]
+            low[a], high[a] = min(low[a], x), max(high[a], x)
+        within2 = max(within2, grids.within2[m])
+    return np.sqrt(within2)
+
+
+@register_jitable
+def around(cell, count):
+    """The cell of an axis that goes round after ``count`` cells, if that is above 0."""
+    return cell % count if count > 0 else cell
+
+
+@register_jitable
+def gap(low, high, cell, inverse, count):
+    """How far a box from ``low`` to ``high``, m from the origin of an axis, is from one of its cells at the
+    least; 0 where the cell has no width, or is one of the outermost."""
+    if inverse == 0.0 or abs(cell) >= FARTHEST or count < 0:
+        return 0.0
+    return max(0.0, cell / inverse - high, low - (cell + 1) / inverse)
+
+
+@inside
+def candidates(grids, low, high, reach, levels, ranges):
+    """Ranges of particles of some ``levels``, from one to before another, in cells around a box, into the
+    rows of ``ranges`` (most, 2), as far as there is room; how many there are, and how many particles they
+    hold at the most."""
+    many, held = 0, 0
+    for level in range(levels[0], levels[1]):
+        n, per, box = grids.counts[level], grids.inverse[level], grids.box[level]
+        far = max(reach, grids.reach[level]) * WIDER
+        first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0])
+        place = grids.base[level]
+        for c0 in range(first0, last0 + 1):
+            row0 = around(c0, n[0])
+            if not box[0, 0] <= row0 <= box[1, 0]:
+                continue
+            left2 = far * far - gap(low[0], high[0], c0, per[0], n0) ** 2
+            first1, last1, n1 = along_axis(low[1], high[1], np.sqrt(max(left2, 0.0)), per[1], n[1])
+            for c1 in range(first1, last1 + 1):
+                row1 = around(c1, n[1])
+                if not box[0, 1] <= row1 <= box[1, 1]:
+                    continue
+                rest2 = left2 - gap(low[1], high[1], c1, per[1], n1) ** 2
+                if rest2 < 0.0:
+                    continue
+                first2, last2, _ = along_axis(low[2], high[2], np.sqrt(rest2), per[2], n[2])
+                line = ((row0 + FARTHEST) << 2 * BITS) + ((row1 + FARTHEST) << BITS)
+                c2 = first2
+                while c2 <= last2:
+                    # Where the line goes round there is a second range, from its other end on.
+                    here = around(c2, n[2])
+                    stop = min(last2 - c2, n[2] - 1 - here) if n[2] > 0 else last2 - c2
+                    key = line + here + FARTHEST
+                    place, close = within(grids, level, place, key, key + stop)
+                    if many < len(ranges):
+                        ranges[many, 0], ranges[many, 1] = grids.starts[place], grids.starts[close]
+                    many += close > place
+                    held += grids.starts[close] - grids.starts[place] + LANES
+                    place = close
+                    c2 += stop + 1
+    return many, held
+
+
+@inside
+def within(grids, level, place, first, last):
+    """The cells of a level from key ``first`` to ``last``: from which on, and before which; they are sought
+    from the cell ``place`` on, unless they come before."""
+    begin, end = grids.base[level], grids.base[level + 1]
+    if place > begin and grids.keys[place - 1] >= first:
+        place = begin
+    found = lower_bound(grids.keys, place, end, first)
+    close = found
+    while close < end and grids.keys[close] <= last:
+        close += 1
+    return found, close
+
+
+@inside
+def of_level(grids, level, ranges, many):
+    """Which of the ``ranges``, from one to before another, are of a level: they come level by level."""
+    first, last = grids.starts[grids.base[level]], grids.starts[grids.base[level + 1]]
+    least, most = 0, many
+    while least < most and ranges[least, 0] < first:
+        least += 1
+    while most > least and ranges[most - 1, 0] >= last:
+        most -= 1
+    return least, most
