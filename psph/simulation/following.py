@@ -117,7 +117,7 @@ def bear(first, last, columns, leaders, images, weighing, followed, state, led):
 @helper
 def take_after(k, followed, n, leaders, images, rows, state, led):
     """Column ``k`` gets the sums of the shares of row ``n`` times what each has that it follows."""
-    density, seen, depth, first = 0.0, 0.0, 0.0, followed.begin[n]
+    density, seen, depth, first = 0.0, 0.0, followed.deeper[n], followed.begin[n]
     velocity = scale(at(state.velocity, k), 0.0)
     for m in range(len(images.turn[0])):
         last, flow, moving = first + followed.many[n, m], 0.0, scale(velocity, 0.0)

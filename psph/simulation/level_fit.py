@@ -41,6 +41,12 @@ Beside a wall the velocity across it is that of a fit to fluid and wall: were it
 water would not make way for a body that comes.  Where the wall lets nothing slip all of it is: were what goes
 along it a mean, a border across a sheared flow would brake it, and the wall bear a tenth more."""
 
+TIPS = 0.3, 0.4
+"""Σ V W between which linear terms of pressure and density fade into their mean, and what weighs between that
+and who follows.  At the tips of a surface shares of both signs have sums of 2 to 5, above of 1.5 to 1.9: who
+followed there had more pressure than who leads below, pressed on these, and so got more yet, by a factor e in
+4 ms."""
+
 NO_SIDE = 1e-6
 """Square of the mean way to walls, in spacings, below which they are on no side."""
 
@@ -64,13 +70,15 @@ class Leaders(NamedTuple):
 
 class Weighed(NamedTuple):
     """How they are weighed: by a ``kernel`` with h = 1 m, times ``cell``, dx^d/h^d of every level;
-    ``periods`` in m or None; the ``order`` of the fit; what ``rows`` bear below a surface."""
+    ``periods`` in m or None; the ``order`` of the fit; what ``rows`` bear below a surface; at which Σ V W
+    linear terms of the pressure fade at ``tips``."""
 
     kernel: Any
     cell: float
     periods: tuple
     order: int
     rows: RowsAtRest
+    tips: tuple[float, float]
 
 
 class Followed(NamedTuple):
@@ -78,13 +86,15 @@ class Followed(NamedTuple):
     shows, ``many`` (n, images), then those of the next; behind them on those of walls, ``beside``
     (n, images); the ``column`` of each entry, its ``share`` c in pressure and density, its share in the
     ``flow`` and in that ``across`` walls, along the unit vector ``normal``, components (dim,) (n,),
-    and the part ``held`` (n,) of these walls along which nothing slips.  ``longest`` is the longest row."""
+    and the part ``held`` (n,) of these walls along which nothing slips; how much ``deeper`` (n,), Pa, each is
+    than who is followed says.  ``longest`` is the longest row."""
 
     begin: np.ndarray
     many: np.ndarray
     beside: np.ndarray
     normal: tuple[np.ndarray, ...]
     held: np.ndarray
+    deeper: np.ndarray
     column: np.ndarray
     share: np.ndarray
     flow: np.ndarray
@@ -134,6 +144,10 @@ def find(k, spacing, leaders, images, weighing, room, followed, n):
         counts[:] = 0
         return
     add_shares(dim, room, share, many)
+    followed.deeper[n] = 0.0
+    if total < weighing.tips[1] and weighing.order > 0:
+        part = part_of(weighing.tips, total)
+        followed.deeper[n] = level_out(dim, spacing, images, room, share, many, part, total)
     linear = part_of(FIRST, total)
     for entry in range(many):
         mean = room.weight[0, entry] / total
@@ -141,6 +155,19 @@ def find(k, spacing, leaders, images, weighing, room, followed, n):
     followed.beside[n] = 0
     if linear < 1.0 and weighing.order > 0:
         look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many)
+
+
+@helper
+def level_out(dim, spacing, images, room, share, many, part, total):
+    """Leave a ``part`` of the ``share`` of ``many`` entries in f₀, and make the rest that in the mean of f,
+    where Σ V W is ``total``; returns how much deeper than this mean f₀ is by the rest, Pa."""
+    deeper = 0.0
+    for entry in range(many):
+        mean = (1.0 - part) * room.weight[0, entry] / total
+        share[entry] = part * share[entry] + mean
+        for d in range(dim):
+            deeper -= mean * images.weight[d] * room.terms[1 + d, entry] * spacing
+    return deeper
 
 
 @helper

@@ -19,7 +19,7 @@ from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
 from psph.simulation.following import OfLeaders, WhoIsLed, bear, follow, tell_rows
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_faces import FaceShares
-from psph.simulation.level_fit import ORDER, Followed, Leaders, Weighed, find_leaders
+from psph.simulation.level_fit import ORDER, TIPS, Followed, Leaders, Weighed, find_leaders
 from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
 from psph.simulation.level_regions import GoingAlong
@@ -87,7 +87,7 @@ class Resizing(Work):
         self.counts = np.zeros((self.levels.count, 4), np.int64)
         cell = (scene.spacing / scene.smoothing_length) ** scene.dimensions
         unit = kernel(scene.case.space.kernel, 1.0, scene.dimensions)
-        self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene))
+        self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene), TIPS)
         self._follow, self._bear, self._go = map(settled, (follow, bear, go_along))
         self._find, self._tell = map(settled, (find_leaders, tell_rows))
         self._lanes, self._mirrors = rank.plan.space.lanes, rank.plan.mirrors
@@ -218,7 +218,7 @@ class Resizing(Work):
         images = self._images(self._mirrors)
         seen *= images.shown_to(where)
         begins, many = np.cumsum(seen) - seen, np.zeros((2, len(own), len(images.deeper)), np.int64)
-        normal, held = np.zeros((store.dimensions, len(own))), np.zeros(len(own))
+        normal, (held, deeper) = np.zeros((store.dimensions, len(own))), np.zeros((2, len(own)))
         size, longest = int(seen.sum()), int(seen.max(initial=0))
         entries = np.empty(size, np.uint32), *np.empty((3, size))
         self._led = WhoIsLed(store.dimensions, store.total)
@@ -226,7 +226,15 @@ class Resizing(Work):
             Side(
                 some,
                 one,
-                Followed(begins[some], *many[:, some], tuple(normal[:, some]), held[some], *entries, longest),
+                Followed(
+                    begins[some],
+                    *many[:, some],
+                    tuple(normal[:, some]),
+                    held[some],
+                    deeper[some],
+                    *entries,
+                    longest,
+                ),
                 every,
                 stand,
             )

@@ -16,7 +16,9 @@ def test_the_types_of_rows_rest_not_on_how_many_there_are(leaders):
     def rows(many):
         led, none = WhoIsLed(2, 10), np.zeros((1, 1), np.int64)
         column = np.arange(many, dtype=np.uint32)
-        led.number(Followed(none[0], none + many, none, (none[0],), none[0], column, *[none[0]] * 3, many))
+        led.number(
+            Followed(none[0], none + many, none, (none[0],), none[0], none[0], column, *[none[0]] * 3, many)
+        )
         return led.rows()
 
     assert numba.typeof(rows(leaders)) == numba.typeof(rows(5))
