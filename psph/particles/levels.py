@@ -24,7 +24,7 @@ CELLS_A_REACH = {1: 1.0, 2: 1.0, 3: 1.25}
 """By dimension, how many cells are as wide as the particles of a level reach at the most: of 0.75, 1, 1.25
 and 1.5 the quickest."""
 
-GROWTH = 8
+SURPLUS = 8
 """Part of the entries for which there is room besides where there was too little: lists of a gas grow on."""
 
 ALL = 2**BITS - 1
@@ -62,7 +62,8 @@ class Grids(NamedTuple):
     first of each, and ``base`` (levels + 1,) the first cells of levels.  ``inverse`` (levels, 3) is how many
     cells a metre has from the ``origin`` (3,) on; ``counts`` (levels, 3) after how many cells an axis goes
     round, 0 where it does not.  ``box`` (levels, 2, 3) are the lowest and the highest cells of each level
-    along each axis, ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.
+    along each axis, ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.  Behind the last of
+    ``columns``, ``position`` and ``within2`` there is a register to be read.
     """
 
     columns: np.ndarray
@@ -95,13 +96,13 @@ def list_by_levels(
         return empty(0, 0)
     total = slab.low + slab.owned + slab.high
     grids = grids_of([x[:total] for x in position], sizes.reach(listed[:total]), slab)
-    across, before = across[grids.columns], np.zeros(0 if sought is None else total + 1, np.int64)
+    columns, before = grids.columns[:total], np.zeros(0 if sought is None else total + 1, np.int64)
     if sought is not None:
-        np.cumsum(sought[grids.columns] > 0.0, out=before[1:])
+        np.cumsum(sought[columns] > 0.0, out=before[1:])
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
-    rows, most = OwnedRows(slab.low, slab.owned, lanes, across, float(sizes.mutual), before), GROUPS
+    rows, most = OwnedRows(slab.low, slab.owned, lanes, across[columns], float(sizes.mutual), before), GROUPS
     while True:
         work = [work_room(most, len(position)) for _ in range(threads())]
         needed = in_rooms(fill_levels, 0, len(grids.keys), work, grids, rows, room)
@@ -109,7 +110,7 @@ def list_by_levels(
             return room
         most = max(most, *(-2 * n for n in needed))
         if max(needed) > 0:
-            room = room._replace(lists=entries_for(max(needed) + max(needed) // GROWTH))
+            room = room._replace(lists=entries_for(max(needed) + max(needed) // SURPLUS))
 
 
 def grids_of(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
@@ -150,7 +151,7 @@ def grids_of(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids
     if moved is not None:
         seen[first + slab.axis] += moved[order]
     return Grids(
-        order.astype(np.uint32),
+        _padded(order.astype(np.uint32)),
         seen,
         tuple(map(_padded, position)),
         _padded(reach**2),
@@ -205,7 +206,7 @@ def _beyond(x: np.ndarray, period: float, slab: Slab) -> np.ndarray:
 
 def _padded(values: np.ndarray) -> np.ndarray:
     """Values and as many more as a register reads behind the last."""
-    return np.concatenate([values, np.zeros(LANES)])
+    return np.concatenate([values, np.zeros(LANES, values.dtype)])
 
 
 def work_room(groups: int, dimensions: int) -> tuple:
