@@ -9,7 +9,7 @@ so the corners change sides with it, and what is there once stays there once, wh
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from psph.case.keys import AXES
 from psph.fields import VECTOR, Field, Same, Turned
 from psph.moments import normalised
 from psph.physics.motion import is_prescribed
-from psph.scene.forms.form import Faces, chosen
+from psph.scene.forms.form import Faces, Form, chosen
 from psph.scene.forms.make import form_of
 from psph.scene.level_ways import way_of
 from psph.scene.shapes import Corner, bounds
@@ -115,7 +115,7 @@ class Levels:
     def nearest(self, points: np.ndarray) -> tuple[int, float]:
         """The region that ever comes nearest to some ``points`` (n, dim), m, as the coarsest particles around
         it know it, and how far all of them are then outside of that, m."""
-        away = [self._faces(n, 1, way.back(points)).away.min() for n, way in enumerate(self._ways)]
+        away = [self._away(n, 1, way.back(points)).min() for n, way in enumerate(self._ways)]
         return int(np.argmin(away)), float(min(away))
 
     def _around(self, level: int) -> float:
@@ -128,7 +128,9 @@ class Levels:
         """How far ``points`` (n, dim) are outside of the region of a level, m (n,); below 0 inside of it."""
         if not 0 < level < self.count:
             return np.full(len(points), -np.inf if level == 0 else np.inf)
-        return self._border(level, points).away
+        refine = enumerate(self.layout.case.space.refine)
+        away = (self._away(n, level, points) for n, one in refine if one.levels >= level)
+        return reduce(np.minimum, away)
 
     def _border(self, level: int, points: np.ndarray) -> Faces:
         """The border of the region of a level that is nearest to each of some ``points`` (n, dim)."""
@@ -281,25 +283,37 @@ class Levels:
     def _ways(self) -> list:
         return [way_of(self.layout, one) for one in self.layout.case.space.refine]
 
+    @cached_property
+    def _forms(self) -> list[Form]:
+        return [form_of(one.shape) for one in self.layout.case.space.refine]
+
     def ever(self, level: int, points: np.ndarray) -> np.ndarray:
         """As :meth:`outside`, of regions wherever they may come."""
         told = enumerate(zip(self.layout.case.space.refine, self._ways))
-        away = [self._faces(n, level, way.back(points)).away for n, (one, way) in told if one.levels >= level]
-        return np.min(away, axis=0)
+        away = (self._away(n, level, way.back(points)) for n, (one, way) in told if one.levels >= level)
+        return reduce(np.minimum, away)
 
     def carried_by(self, name: str) -> int:
         """The finest level of whose regions one moves with the part of this name: it stays in there."""
         refine = self.layout.case.space.refine
         return max((one.levels for one in refine if one.moves_with == name), default=0)
 
+    def _away(self, number: int, level: int, points: np.ndarray) -> np.ndarray:
+        """How far points are outside of one region, as large as what is finer in it needs, m (n,)."""
+        form, places, more = self._laid(number, level, points)
+        return reduce(np.minimum, map(form.away, places)) - more
+
     def _faces(self, number: int, level: int, points: np.ndarray) -> Faces:
-        """The border of one region, nearest image, as large as what is finer in it needs."""
-        one = self.layout.case.space.refine[number]
-        points = points - self.moved[number]
-        more = sum(self._around(finer) for finer in range(level + 1, 1 + one.levels))
-        form = form_of(one.shape)
-        found = chosen([form.faces(x) for x in self._images(points)], np.argmin)
+        """The border of that region, nearest image."""
+        form, places, more = self._laid(number, level, points)
+        found = chosen([*map(form.faces, places)], np.argmin)
         return Faces(found.away - more, found.normal)
+
+    def _laid(self, number: int, level: int, points: np.ndarray) -> tuple[Form, Iterator[np.ndarray], float]:
+        """Its form, the images of points where that was at the start, and by how much it is larger, m."""
+        one = self.layout.case.space.refine[number]
+        more = sum(self._around(finer) for finer in range(level + 1, 1 + one.levels))
+        return self._forms[number], self._images(points - self.moved[number]), more
 
     def _images(self, points: np.ndarray) -> Iterator[np.ndarray]:
         """The points, and their images one period away along each axis that repeats."""

@@ -14,8 +14,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise
-from psph.formula import helper
+from psph.engine.jit import uncounted
+from psph.engine.simd import consecutive, spread, total, width_of
+from psph.formula import long_helper
+from psph.particles.lanes import LANES
 from psph.simulation.least_squares import factor, solve
 from psph.simulation.level_images import is_near
 from psph.simulation.surface_rows import RowsAtRest
@@ -104,34 +106,37 @@ class Followed(NamedTuple):
 
 class LevelFit(NamedTuple):
     """Room for a fit: the ``terms`` (n, longest) 1, t and tt of entries, those times their ``weight``
-    (n, longest), the sums of the products of both, ``square`` (n, n), and ``share`` (n,), what of Σw times
-    each makes f₀, with terms of second order ``second`` (n,)."""
+    (n, longest), both term behind term too, ``all_terms`` and ``all_weights``, the sums of the products of
+    both, ``square`` (n, n), and ``share`` (n,), what of Σw times each makes f₀, with terms of second order
+    ``second`` (n,)."""
 
     terms: np.ndarray
     weight: np.ndarray
+    all_terms: np.ndarray
+    all_weights: np.ndarray
     square: np.ndarray
     share: np.ndarray
     second: np.ndarray
 
 
-@helper
-def room_for(dimensions, order, longest):
-    """LevelFit for a fit of an ``order``."""
+def room_for(dimensions: int, order: int, longest: int) -> LevelFit:
+    """Room for a fit of an ``order`` to as many as the ``longest`` row has."""
     n = 1 if order == 0 else 1 + dimensions if order == 1 else (dimensions + 1) * (dimensions + 2) // 2
-    terms, square = np.empty((n, longest)), np.zeros((n, n))
-    return LevelFit(terms, np.empty((n, longest)), square, np.zeros(n), np.zeros(n))
+    terms = np.empty((n, -(-longest // LANES) * LANES))  # whole registers
+    weights, square = np.empty(terms.shape), np.zeros((n, n))
+    flat = terms.reshape(-1), weights.reshape(-1)
+    return LevelFit(terms, weights, *flat, square, np.zeros(n), np.zeros(n))
 
 
-@elementwise
-def find_leaders(first, last, columns, spacing, leaders, images, weighing, followed):
+@uncounted
+def find_leaders(first, last, columns, spacing, leaders, images, weighing, followed, room):
     """Find whom some ``columns`` (n,) follow, from the ``first`` to the one before the ``last``; ``spacing``
-    (n,) m is that of those, which have ``images`` (psph.simulation.level_images)."""
-    room = room_for(len(leaders.position), weighing.order, followed.longest)
+    (n,) m is that of those, which have ``images`` (psph.simulation.level_images); ``room`` is to work in."""
     for n in range(first, last):
         find(np.uint64(columns[n]), spacing[n], leaders, images, weighing, room, followed, n)
 
 
-@helper
+@long_helper
 def find(k, spacing, leaders, images, weighing, room, followed, n):
     """Whom ``k`` follows and their shares, by a fit, in row ``n``; nobody where they are too few."""
     dim, begin = len(leaders.position), followed.begin[n]
@@ -157,7 +162,7 @@ def find(k, spacing, leaders, images, weighing, room, followed, n):
         look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many)
 
 
-@helper
+@long_helper
 def level_out(dim, spacing, images, room, share, many, part, total):
     """Leave a ``part`` of the ``share`` of ``many`` entries in f₀, and make the rest that in the mean of f,
     where Σ V W is ``total``; returns how much deeper than this mean f₀ is by the rest, Pa."""
@@ -170,7 +175,7 @@ def level_out(dim, spacing, images, room, share, many, part, total):
     return deeper
 
 
-@helper
+@long_helper
 def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many):
     """Put those of walls behind the ``many`` entries of ``k``, and find the shares of both in the flow across
     the walls; none where these are all around."""
@@ -178,7 +183,9 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
     column, across = followed.column[begin:], followed.across[begin:]
     rows, counts = (leaders.walls,), followed.beside[n]
     found = take_images(k, spacing, leaders, rows, images, weighing, room, column, many, counts)
-    size, total, held = 0.0, room.weight[0, many:found].sum(), 0.0
+    size, total, held = 0.0, 0.0, 0.0
+    for entry in range(many, found):
+        total += room.weight[0, entry]
     for d in range(dim):
         way = 0.0
         for entry in range(many, found):
@@ -197,7 +204,7 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
     add_shares(dim, room, across, found)
 
 
-@helper
+@long_helper
 def take_images(k, spacing, leaders, rows, images, weighing, room, column, many, counts):
     """Take those in some ``rows`` of column ``k`` as all ``images`` show them, behind ``many`` entries, and
     put how many each shows into ``counts`` (images,); returns how many there are then."""
@@ -210,7 +217,7 @@ def take_images(k, spacing, leaders, rows, images, weighing, room, column, many,
     return many
 
 
-@helper
+@long_helper
 def add_shares(dim, room, share, many):
     """Set the ``share`` of ``many`` entries in f₀, from the sums of the products of their terms."""
     total = room.square[0, 0]
@@ -223,13 +230,13 @@ def add_shares(dim, room, share, many):
             share[entry] += of * room.weight[one, entry]
 
 
-@helper
+@long_helper
 def part_of(between, total):
     """0 where ``total`` is below the first of two numbers, 1 where it is above the second."""
     return min(max((total - between[0]) / (between[1] - between[0]), 0.0), 1.0)
 
 
-@helper
+@long_helper
 def set_shares(dim, total, room):
     """What of Σw times each term makes f₀ where Σ V W is ``total``, of the ``square`` in factors."""
     second = part_of(SECOND, total)
@@ -241,7 +248,7 @@ def set_shares(dim, total, room):
             room.share[one] += second * (room.second[one] - room.share[one])
 
 
-@helper
+@long_helper
 def take_row(k, spacing, leaders, lists, images, m, weighing, room, column, many):
     """Take those who lead in a row of column ``k``, as image ``m`` shows them, behind ``many`` entries: the
     ``column`` of each, where it is and its weight; returns how many there are then."""
@@ -262,23 +269,29 @@ def take_row(k, spacing, leaders, lists, images, m, weighing, room, column, many
     return many
 
 
-@helper
+@long_helper
 def sum_products(dim, room, many):
     """Set the terms of ``many`` entries by where they are, those times their weights, and the sums of the
     products of both, of which the lower half is set."""
-    terms, weights, count = room.terms, room.weight, 1 + dim
+    terms, weights, count, filled = room.terms, room.weight, 1 + dim, -(-many // LANES) * LANES
+    weights[0, many:filled] = 0.0
+    for one in range(1, min(count, len(terms))):
+        terms[one, many:filled] = 0.0
     for one in range(dim if len(terms) > count else 0):
         for other in range(one, dim):
-            for entry in range(many):
+            for entry in range(filled):
                 terms[count, entry] = terms[1 + one, entry] * terms[1 + other, entry]
             count += 1
-    terms[0, :many] = 1.0
+    terms[0, :filled] = 1.0
     for one in range(1, len(terms)):
-        for entry in range(many):
+        for entry in range(filled):
             weights[one, entry] = weights[0, entry] * terms[one, entry]
-    for one in range(len(terms)):
-        for other in range(one + 1):
-            total = 0.0
-            for entry in range(many):
-                total += weights[one, entry] * terms[other, entry]
-            room.square[one, other] = total
+    # Side by side: one after another each product would wait for the sum before it.
+    width, long = width_of(room.all_terms), np.uint64(terms.shape[1])
+    for one in range(np.uint64(len(terms))):
+        for other in range(one + np.uint64(1)):
+            products = spread(0.0, room.all_terms)
+            for entry in range(np.uint64(0), np.uint64(filled), width):
+                weighed = consecutive(room.all_weights, one * long + entry)
+                products = products + weighed * consecutive(room.all_terms, other * long + entry)
+            room.square[one, other] = total(products)

@@ -10,7 +10,7 @@ from psph.composition.pair import take
 from psph.composition.terms import displacement
 from psph.engine.jit import elementwise
 from psph.engine.settled import settled
-from psph.engine.threads import in_threads
+from psph.engine.threads import in_rooms, in_threads, threads
 from psph.fields import seen_at, view_of
 from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.level_lists import Membership, keep_level, rows_that_name
@@ -19,7 +19,7 @@ from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
 from psph.simulation.following import OfLeaders, WhoIsLed, bear, follow, tell_rows
 from psph.simulation.level_clock import LevelClock
 from psph.simulation.level_faces import FaceShares
-from psph.simulation.level_fit import ORDER, TIPS, Followed, Leaders, Weighed, find_leaders
+from psph.simulation.level_fit import ORDER, TIPS, Followed, Leaders, Weighed, find_leaders, room_for
 from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
 from psph.simulation.level_regions import GoingAlong
@@ -319,7 +319,8 @@ class Resizing(Work):
             return
         columns, spacing = self.columns[side.some], self._scale[side.some]
         whom = columns, spacing, self._leaders, images, self._weighing, side.followed
-        in_threads(self._find, 0, len(columns), *whom)
+        fit = self.store.dimensions, self._weighing.order, side.followed.longest
+        in_rooms(self._find, 0, len(columns), [(room_for(*fit),) for _ in range(threads())], *whom)
         self._led.number(side.followed)
 
     def loops(self, one, loop, seen: tuple, sums) -> Iterator[tuple]:

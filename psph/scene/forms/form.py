@@ -57,6 +57,10 @@ class Form:
         """
         raise NotImplementedError
 
+    def away(self, points: np.ndarray) -> np.ndarray:
+        """φ alone (n,), m."""
+        return self.faces(points).away
+
     def corners(self, apart: float) -> np.ndarray:
         """Its sharp corners (n, dim), m, in 3D also points on its straight edges, ``apart`` m at most."""
         return np.empty((0, self.dimensions))
@@ -139,6 +143,8 @@ def between(one: np.ndarray, other: np.ndarray, apart: float) -> np.ndarray:
 
 def chosen(found: Sequence[Faces], choose) -> Faces:
     """Of several faces at each point the one whose distance is chosen."""
+    if len(found) == 1:
+        return found[0]
     away, normal = (np.stack(of) for of in zip(*found))
     which, row = choose(away, axis=0), np.arange(away.shape[1])
     return Faces(away[which, row], normal[which, row])

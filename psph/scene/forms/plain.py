@@ -48,6 +48,13 @@ class Boxed(Form):
             np.where(aslant[:, None], normal, flat),
         )
 
+    def away(self, points: np.ndarray) -> np.ndarray:
+        """As psph.scene.forms.form says."""
+        beyond = [np.maximum(low - x, x - up) for x, low, up in zip(points.T, self.lower, self.upper)]
+        nearest = np.maximum.reduce(beyond)
+        outer2 = sum(np.maximum(one, 0.0) ** 2 for one in beyond)
+        return np.where(nearest > 0.0, np.sqrt(outer2), nearest)
+
     def corners(self, apart: float) -> np.ndarray:
         """As psph.scene.forms.form says."""
         ends = np.array([*product(*zip(self.lower, self.upper))])
