@@ -129,20 +129,22 @@ def room_for(dimensions: int, order: int, longest: int) -> LevelFit:
 
 
 @uncounted
-def find_leaders(first, last, columns, spacing, leaders, images, weighing, followed, room):
+def find_leaders(first, last, columns, spacing, leaders, images, weighing, wide, followed, room):
     """Find whom some ``columns`` (n,) follow, from the ``first`` to the one before the ``last``; ``spacing``
-    (n,) m is that of those, which have ``images`` (psph.simulation.level_images); ``room`` is to work in."""
+    (n,) m is that of those, which have ``images`` (psph.simulation.level_images); ``room`` is to work in.
+    Who looks ``wide`` sees as far as its own smoothing length reaches, or farther."""
     for n in range(first, last):
-        find(np.uint64(columns[n]), spacing[n], leaders, images, weighing, room, followed, n)
+        find(np.uint64(columns[n]), spacing[n], leaders, images, weighing, room, wide, followed, n)
 
 
 @long_helper
-def find(k, spacing, leaders, images, weighing, room, followed, n):
+def find(k, spacing, leaders, images, weighing, room, wide, followed, n):
     """Whom ``k`` follows and their shares, by a fit, in row ``n``; nobody where they are too few."""
     dim, begin = len(leaders.position), followed.begin[n]
     column, share, flow = followed.column[begin:], followed.share[begin:], followed.flow[begin:]
     rows, counts = (leaders.own, leaders.others), followed.many[n]
-    many = take_images(k, spacing, leaders, rows, images, weighing, room, column, 0, counts)
+    least = leaders.length[k] if wide else 0.0
+    many = take_images(k, spacing, least, leaders, rows, images, weighing, room, column, 0, counts)
     sum_products(dim, room, many)
     total = room.square[0, 0]
     if total <= TOO_FEW:
@@ -182,7 +184,7 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
     dim, begin = len(leaders.position), followed.begin[n]
     column, across = followed.column[begin:], followed.across[begin:]
     rows, counts = (leaders.walls,), followed.beside[n]
-    found = take_images(k, spacing, leaders, rows, images, weighing, room, column, many, counts)
+    found = take_images(k, spacing, 0.0, leaders, rows, images, weighing, room, column, many, counts)
     size, total, held = 0.0, 0.0, 0.0
     for entry in range(many, found):
         total += room.weight[0, entry]
@@ -205,14 +207,14 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
 
 
 @long_helper
-def take_images(k, spacing, leaders, rows, images, weighing, room, column, many, counts):
+def take_images(k, spacing, least, leaders, rows, images, weighing, room, column, many, counts):
     """Take those in some ``rows`` of column ``k`` as all ``images`` show them, behind ``many`` entries, and
     put how many each shows into ``counts`` (images,); returns how many there are then."""
     for m in range(len(images.turn[0])):
         before = many
         if is_near(images, m, at(leaders.position, k)):
             for lists in rows:
-                many = take_row(k, spacing, leaders, lists, images, m, weighing, room, column, many)
+                many = take_row(k, spacing, least, leaders, lists, images, m, weighing, room, column, many)
         counts[m] = many - before
     return many
 
@@ -249,9 +251,10 @@ def set_shares(dim, total, room):
 
 
 @long_helper
-def take_row(k, spacing, leaders, lists, images, m, weighing, room, column, many):
+def take_row(k, spacing, least, leaders, lists, images, m, weighing, room, column, many):
     """Take those who lead in a row of column ``k``, as image ``m`` shows them, behind ``many`` entries: the
-    ``column`` of each, where it is and its weight; returns how many there are then."""
+    ``column`` of each, where it is and its weight, by a smoothing length that is no less than the ``least``,
+    m; returns how many there are then."""
     row, x_k = k - np.uint64(leaders.low), at(leaders.position, k)
     entry, last = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
     while entry < last:
@@ -260,7 +263,10 @@ def take_row(k, spacing, leaders, lists, images, m, weighing, room, column, many
         x_j = at(leaders.position, j)
         seen = add(multiply(at(images.turn, m), x_j), at(images.shift, m))
         x_jk = nearest_image(subtract(seen, x_k), weighing.periods)
-        w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / leaders.length[j])
+        h = max(leaders.length[j], least)
+        w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / h)
+        for _ in range(len(x_jk)):
+            w *= leaders.length[j] / h
         if w > 0.0:
             column[many], room.weight[0, many] = j, w
             for d in range(len(x_jk)):

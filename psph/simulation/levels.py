@@ -31,6 +31,9 @@ from psph.work import Rank, Work
 OF_FORCES = ("acceleration", "density_rate", "density_rate_1", "density_rate_2")
 """What forces give, and those who follow do not have: no pass has sums of it for them."""
 
+MAY = 2.0
+"""Supports from a border, in water that leads, beyond which walls see none that leads on another level."""
+
 BORN, DIED, GONE, COME = range(4)
 """What is counted of each level: who is born and dies, who begins to follow and who to lead."""
 
@@ -181,10 +184,11 @@ class Resizing(Work):
         store, lists = self.store, self.domain.lists
         listed, of = tuple(store["listed_position"]), Membership(level, leads)
         rows = lists, store.low, store.owned, of
-        stands = self._stands(group, level, listed)
-        others = rows_that_name(*rows, follows | stands, False, 1)
+        stands, may = self._stands(group, level, listed)
+        others = rows_that_name(*rows, follows | may, False, 1)
         beside, shares = np.zeros((2, store.owned), bool)
         keep_level(store.owned, store.low, lists, level.astype(np.uint8), leads, beside)
+        stands[store.inner] |= may[store.inner] & ~beside & (others.lengths > 0)
         if self._loaded is not None:
             shares = self._shares.tell(lists)
             everyone = lists, store.low, store.owned, Membership(level, fluid)
@@ -241,15 +245,17 @@ class Resizing(Work):
             for (stand, every, one), some in zip(kinds, map(slice, ends[:-1], ends[1:]))
         ]
 
-    def _stands(self, group: np.ndarray, level: np.ndarray, listed) -> np.ndarray:
-        """Which walls see none of their ``level`` who leads (columns,): their pushes move nobody, so that
-        nothing would hold back a density that summed up the rates of what flows by."""
-        places, found = self.domain.inside(np.stack(listed, axis=1)), np.zeros(len(group), bool)
+    def _stands(self, group: np.ndarray, level: np.ndarray, listed) -> tuple[np.ndarray, np.ndarray]:
+        """Which walls see none of their ``level`` who leads (columns,), wherever fluid is: their pushes move
+        nobody, so that nothing would hold back a density that summed up the rates of what flows by; and which
+        may see none (columns,)."""
+        places, (found, may) = self.domain.inside(np.stack(listed, axis=1)), np.zeros((2, len(group)), bool)
         for one in range(self.levels.count):
             own = np.flatnonzero(self._evolves[group] & (level == one))
             beyond, finer = (self.levels.outside(n, places[own]) for n in (one, one + 1))
-            found[own] = np.maximum(beyond, -finer) > self.levels.support(one)
-        return found
+            away, support = np.maximum(beyond, -finer), self.levels.support(one)
+            found[own], may[own] = away > support, away > -MAY * support
+        return found, may
 
     def _followed(self, where: np.ndarray, level: np.ndarray) -> np.ndarray:
         """The level of those whom particles of a ``level`` (n,) at some places (n, dim), m, follow: the next
@@ -318,7 +324,7 @@ class Resizing(Work):
         if not side.begin():
             return
         columns, spacing = self.columns[side.some], self._scale[side.some]
-        whom = columns, spacing, self._leaders, images, self._weighing, side.followed
+        whom = columns, spacing, self._leaders, images, self._weighing, side.stand, side.followed
         fit = self.store.dimensions, self._weighing.order, side.followed.longest
         in_rooms(self._find, 0, len(columns), [(room_for(*fit),) for _ in range(threads())], *whom)
         self._led.number(side.followed)

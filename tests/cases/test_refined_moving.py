@@ -323,14 +323,16 @@ def hardest_push(folder):
 
 
 def test_water_makes_way_for_a_block_that_comes_through_a_border(tmp_path, monkeypatch):
-    """With either spacing everywhere 1.04; measured 1.10.  The control, 1.24: who follows beside the block
-    knows nothing of its velocity."""
+    """With either spacing everywhere 1.04; measured 1.11.  The control, 1.25: who follows beside the block
+    knows nothing of its velocity, and walls before which another level leads do not follow that.  Either of the
+    two alone leaves 1.10 to 1.12."""
     assert 0.95 < hardest_push(tmp_path) < 1.16
 
     def alone(low, own, others, walls, *rest):
         return Leaders(low, own, others, walls._replace(lengths=np.zeros_like(walls.lengths)), *rest)
 
     monkeypatch.setattr(levels, "Leaders", alone)
+    monkeypatch.setattr(levels, "MAY", -1.0)
     assert hardest_push(tmp_path) > 1.22
 
 

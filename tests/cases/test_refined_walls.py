@@ -86,6 +86,19 @@ no_slip = true
 """
 """Water whose surface sinks along a wall to a border."""
 
+SWAYS = (
+    SURGES.replace('condition = "extrapolated"', "")
+    .replace("end = 0.3", "end = 0.8")
+    .replace("[0.5, 0.0]", "[0.3, 0.0]")
+    + """
+[gauges.floor.force]
+on = ["floor"]
+"""
+)
+"""Water that sways in such a tank with dynamic walls."""
+
+ON_FACES = "[{ shape.box = { lower = [0.0, 0.0], upper = [1.2, 0.8] } }]"
+
 ACROSS = "[{ shape.box = { lower = [0.4, -0.3], upper = [1.2, 1.2] } }]"
 
 
@@ -104,7 +117,7 @@ def stray(folder):
 def test_walls_in_a_margin_have_the_pressure_of_the_water_there(tmp_path, monkeypatch):
     """The control: their densities go on by rates that nobody's motion holds back; the run blows up at 0.16 s."""
     assert stray(tmp_path) < 2.0  # measured 1.4
-    monkeypatch.setattr(levels.Resizing, "_stands", lambda work, group, *_: np.zeros(len(group), bool))
+    monkeypatch.setattr(levels.Resizing, "_stands", lambda work, group, *_: np.zeros((2, len(group)), bool))
     assert stray(tmp_path) > 5.0  # 11
 
 
@@ -148,3 +161,27 @@ def test_who_follows_at_the_tip_of_a_surface_does_not_drive_who_leads(tmp_path, 
     assert fastest(tmp_path) < 0.7  # measured 0.56
     monkeypatch.setattr(levels, "TIPS", (-1.0, 0.0))
     assert fastest(tmp_path) > 1.5  # 2.30
+
+
+def weight_on_the_floor(folder, refine, spacing):
+    """The mean force down on it from 0.15 to 0.8 s, N/m."""
+    folder.mkdir()
+    text = SWAYS.replace("[{ shape.box = { lower = [-0.3, -0.3], upper = [0.48, 0.5] } }]", refine)
+    case, found = draft(folder, text.replace("spacing = 0.04", f"spacing = {spacing}")), []
+    simulation, [gauge] = start(case), gauges_of(Scene(case)).values()
+    while simulation.time < 0.8:
+        simulation.step(0.8)
+        if simulation.time > 0.15:
+            found.append(gauge.row(simulation)[1])
+    return -np.mean(found)
+
+
+def test_walls_on_whose_faces_a_region_ends_bear_the_water(tmp_path, monkeypatch):
+    """They are outside of it, but all the water in front of them leads on the other level.  The control: their
+    densities go on by rates that nobody's motion holds back."""
+    told = weight_on_the_floor(tmp_path / "fine", "[]", 0.02)
+    assert (
+        abs(weight_on_the_floor(tmp_path / "refined", ON_FACES, 0.04) / told - 1.0) < 0.01
+    )  # measured 0.006
+    monkeypatch.setattr(levels, "MAY", -1.0)
+    assert abs(weight_on_the_floor(tmp_path / "control", ON_FACES, 0.04) / told - 1.0) > 0.015  # 0.018
