@@ -14,15 +14,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import uncounted
-from psph.engine.simd import consecutive, spread, total, width_of
+from psph.engine.jit import overload, register_jitable, uncounted, unrolled
+from psph.engine.simd import bits, consecutive, spread, total, width_of
 from psph.formula import long_helper
-from psph.particles.lanes import LANES
+from psph.particles.lanes import LANES, consecutive_each, keep_entries, keep_lanes
 from psph.simulation.least_squares import factor, solve
 from psph.simulation.level_images import is_near
 from psph.simulation.surface_rows import RowsAtRest
 from psph.smoothing import weight
-from psph.vectors import add, at, dot, multiply, nearest_image, subtract
+from psph.vectors import add, at, dot, multiply, nearest_image, put, subtract
 
 FLAT = 0.01
 """Variance of a term of the fit, in spacings, less what terms before it tell, below which it is left out."""
@@ -108,7 +108,8 @@ class LevelFit(NamedTuple):
     """Room for a fit: the ``terms`` (n, longest) 1, t and tt of entries, those times their ``weight``
     (n, longest), both term behind term too, ``all_terms`` and ``all_weights``, the sums of the products of
     both, ``square`` (n, n), and ``share`` (n,), what of Σw times each makes f₀, with terms of second order
-    ``second`` (n,)."""
+    ``second`` (n,).  Of entries the ``column``, the components of where they are, ``place`` (dim,), m, and
+    the smoothing ``length``, m, ``own`` and that by which they are weighed, all (longest,)."""
 
     terms: np.ndarray
     weight: np.ndarray
@@ -117,15 +118,21 @@ class LevelFit(NamedTuple):
     square: np.ndarray
     share: np.ndarray
     second: np.ndarray
+    column: np.ndarray
+    place: tuple[np.ndarray, ...]
+    own: np.ndarray
+    length: np.ndarray
 
 
 def room_for(dimensions: int, order: int, longest: int) -> LevelFit:
     """Room for a fit of an ``order`` to as many as the ``longest`` row has."""
     n = 1 if order == 0 else 1 + dimensions if order == 1 else (dimensions + 1) * (dimensions + 2) // 2
-    terms = np.empty((n, -(-longest // LANES) * LANES))  # whole registers
-    weights, square = np.empty(terms.shape), np.zeros((n, n))
+    many = longest + 2 * LANES  # whole registers, and one behind the last entry
+    terms, weights, square = np.zeros((n, many)), np.zeros((n, many)), np.zeros((n, n))
     flat = terms.reshape(-1), weights.reshape(-1)
-    return LevelFit(terms, weights, *flat, square, np.zeros(n), np.zeros(n))
+    lines = tuple(np.zeros((dimensions + 2, many)))
+    column = np.zeros(many, np.uint32)
+    return LevelFit(terms, weights, *flat, square, *np.zeros((2, n)), column, lines[:-2], *lines[-2:])
 
 
 @uncounted
@@ -141,10 +148,11 @@ def find_leaders(first, last, columns, spacing, leaders, images, weighing, wide,
 def find(k, spacing, leaders, images, weighing, room, wide, followed, n):
     """Whom ``k`` follows and their shares, by a fit, in row ``n``; nobody where they are too few."""
     dim, begin = len(leaders.position), followed.begin[n]
-    column, share, flow = followed.column[begin:], followed.share[begin:], followed.flow[begin:]
+    share, flow = followed.share[begin:], followed.flow[begin:]
     rows, counts = (leaders.own, leaders.others), followed.many[n]
     least = leaders.length[k] if wide else 0.0
-    many = take_images(k, spacing, least, leaders, rows, images, weighing, room, column, 0, counts)
+    many = take_images(k, spacing, least, leaders, rows, images, weighing, room, np.uint64(0), counts)
+    name(room, followed.column[begin:], np.uint64(0), many)
     sum_products(dim, room, many)
     total = room.square[0, 0]
     if total <= TOO_FEW:
@@ -182,9 +190,9 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
     """Put those of walls behind the ``many`` entries of ``k``, and find the shares of both in the flow across
     the walls; none where these are all around."""
     dim, begin = len(leaders.position), followed.begin[n]
-    column, across = followed.column[begin:], followed.across[begin:]
-    rows, counts = (leaders.walls,), followed.beside[n]
-    found = take_images(k, spacing, 0.0, leaders, rows, images, weighing, room, column, many, counts)
+    across, rows, counts = followed.across[begin:], (leaders.walls,), followed.beside[n]
+    found = take_images(k, spacing, 0.0, leaders, rows, images, weighing, room, many, counts)
+    name(room, followed.column[begin:], many, found)
     size, total, held = 0.0, 0.0, 0.0
     for entry in range(many, found):
         total += room.weight[0, entry]
@@ -198,7 +206,7 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
         counts[:] = 0
         return
     for entry in range(many, found):
-        held += room.weight[0, entry] * leaders.holds[column[entry]]
+        held += room.weight[0, entry] * leaders.holds[np.uint64(room.column[entry])]
     followed.held[n] = held / total
     for d in range(dim):
         followed.normal[d][n] /= np.sqrt(size)
@@ -207,16 +215,24 @@ def look_at_walls(k, spacing, leaders, images, weighing, room, followed, n, many
 
 
 @long_helper
-def take_images(k, spacing, least, leaders, rows, images, weighing, room, column, many, counts):
+def take_images(k, spacing, least, leaders, rows, images, weighing, room, many, counts):
     """Take those in some ``rows`` of column ``k`` as all ``images`` show them, behind ``many`` entries, and
     put how many each shows into ``counts`` (images,); returns how many there are then."""
     for m in range(len(images.turn[0])):
         before = many
         if is_near(images, m, at(leaders.position, k)):
             for lists in rows:
-                many = take_row(k, spacing, least, leaders, lists, images, m, weighing, room, column, many)
+                stop = see_row(k, least, leaders, lists, images, m, weighing, room, many)
+                many = keep_weighed(spacing, weighing, room, many, stop)
         counts[m] = many - before
     return many
+
+
+@long_helper
+def name(room, column, first, last):
+    """Write the columns of the entries ``first`` to ``last``."""
+    for entry in range(first, last):
+        column[entry] = room.column[entry]
 
 
 @long_helper
@@ -251,35 +267,73 @@ def set_shares(dim, total, room):
 
 
 @long_helper
-def take_row(k, spacing, least, leaders, lists, images, m, weighing, room, column, many):
-    """Take those who lead in a row of column ``k``, as image ``m`` shows them, behind ``many`` entries: the
-    ``column`` of each, where it is and its weight, by a smoothing length that is no less than the ``least``,
-    m; returns how many there are then."""
-    row, x_k = k - np.uint64(leaders.low), at(leaders.position, k)
+def see_row(k, least, leaders, lists, images, m, weighing, room, many):
+    """Put those of a row of column ``k`` behind ``many`` entries, as image ``m`` shows them, and by which
+    length they are weighed: theirs, but no less than the ``least``, m; returns how many there are then."""
+    row, x_k, place = k - np.uint64(leaders.low), at(leaders.position, k), many
     entry, last = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
     while entry < last:
         j = np.uint64(lists.lists[entry])
+        seen = add(multiply(at(images.turn, m), at(leaders.position, j)), at(images.shift, m))
+        put(room.place, place, nearest_image(subtract(seen, x_k), weighing.periods))
+        room.column[place], room.own[place] = j, leaders.length[j]
+        room.length[place] = max(leaders.length[j], least)
         entry += np.uint64(1)
-        x_j = at(leaders.position, j)
-        seen = add(multiply(at(images.turn, m), x_j), at(images.shift, m))
-        x_jk = nearest_image(subtract(seen, x_k), weighing.periods)
-        h = max(leaders.length[j], least)
-        w = weighing.cell * weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / h)
+        place += np.uint64(1)
+    return place
+
+
+@long_helper
+def keep_weighed(spacing, weighing, room, many, stop):
+    """Keep those of the entries ``many`` to ``stop`` that have a weight, and set it and their terms; returns
+    how many there are then."""
+    last, one, long = many, np.uint64(1), np.uint64(room.terms.shape[1])
+    for entry in range(many, stop, width_of(room.length)):
+        h, own = consecutive(room.length, entry), consecutive(room.own, entry)
+        x_jk = consecutive_each(room.place, entry)
+        w = weight(weighing.kernel, np.sqrt(dot(x_jk, x_jk)) / h) * weighing.cell
         for _ in range(len(x_jk)):
-            w *= leaders.length[j] / h
-        if w > 0.0:
-            column[many], room.weight[0, many] = j, w
-            for d in range(len(x_jk)):
-                room.terms[min(1 + d, len(room.terms) - 1), many] = x_jk[d] / spacing
-            many += 1
-    return many
+            w = w * (own / h)
+        chosen = above_zero(w) & ((one << min(np.uint64(LANES), stop - entry)) - one)
+        keep_entries(room.column, last, room.column, entry, chosen, room.length)
+        keep_terms(room.all_terms, last, long, x_jk, spacing, chosen)
+        last = keep_lanes(room.all_weights, last, w, chosen)
+    return last
+
+
+def above_zero(w):
+    """Bit t says whether lane t is."""
+    return int(w > 0.0)
+
+
+@overload(above_zero)
+def _typed_above_zero(w):
+    return lambda w: bits(w > 0.0)
+
+
+def keep_terms(terms, end, long, x, spacing, chosen):
+    """Write the linear terms of places ``x``, m, to those ``long`` lines of ``terms`` that there are."""
+    for d, along in enumerate(x):
+        if chosen and (1 + d) * int(long) < len(terms):
+            terms[(1 + d) * int(long) + end] = along / spacing
+
+
+@overload(keep_terms)
+def _typed_keep_terms(terms, end, long, x, spacing, chosen):
+    def kept(terms, end, long, line, along, spacing, chosen):
+        if line * long < np.uint64(len(terms)):
+            keep_lanes(terms, line * long + end, along / spacing, chosen)
+
+    lines = (f"kept(terms, end, long, np.uint64({1 + d}), x[{d}], spacing, chosen)" for d in range(len(x)))
+    return unrolled("terms, end, long, x, spacing, chosen", *lines, np=np, kept=register_jitable(kept))
 
 
 @long_helper
 def sum_products(dim, room, many):
     """Set the terms of ``many`` entries by where they are, those times their weights, and the sums of the
     products of both, of which the lower half is set."""
-    terms, weights, count, filled = room.terms, room.weight, 1 + dim, -(-many // LANES) * LANES
+    terms, weights, count = room.terms, room.weight, 1 + dim
+    filled = (np.int64(many) + LANES - 1) // LANES * LANES
     weights[0, many:filled] = 0.0
     for one in range(1, min(count, len(terms))):
         terms[one, many:filled] = 0.0

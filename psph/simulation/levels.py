@@ -225,7 +225,7 @@ class Resizing(Work):
         normal, (held, deeper) = np.zeros((store.dimensions, len(own))), np.zeros((2, len(own)))
         size, longest = int(seen.sum()), int(seen.max(initial=0))
         entries = np.empty(size, np.uint32), *np.empty((3, size))
-        self._led = WhoIsLed(store.dimensions, store.total)
+        self._led = WhoIsLed(store.total)
         self._sides = [
             Side(
                 some,

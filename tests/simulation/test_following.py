@@ -14,7 +14,7 @@ def test_the_types_of_rows_rest_not_on_how_many_there_are(leaders):
     would read others as contiguous, of wrong neighbours in memory."""
 
     def rows(many):
-        led, none = WhoIsLed(2, 10), np.zeros((1, 1), np.int64)
+        led, none = WhoIsLed(10), np.zeros((1, 1), np.int64)
         column = np.arange(many, dtype=np.uint32)
         led.number(
             Followed(none[0], none + many, none, (none[0],), none[0], none[0], column, *[none[0]] * 3, many)
