@@ -5,7 +5,7 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from psph.engine.jit import overload, tuple_of, unrolled
+from psph.engine.jit import overload, register_jitable, tuple_of, unrolled
 from psph.engine.simd import bits, consecutive, lanes_of
 from psph.vectors import at, dot, nearest_image, subtract
 
@@ -112,6 +112,24 @@ def _typed_keep_lanes(array, end, lanes, bits):
         return end + HOW_MANY[bits]
 
     return keep
+
+
+def keep_lines(lines, end: int, long: int, parts, bits: int) -> None:
+    """Write such lanes of each of the ``parts`` behind place ``end`` of a line of its own, from the second
+    on, as far as there are any; ``lines`` are ``long`` and stand one behind another."""
+    for d, lanes in enumerate(parts):
+        if bits and (1 + d) * int(long) < len(lines):
+            lines[(1 + d) * int(long) + int(end)] = lanes
+
+
+@overload(keep_lines)
+def _typed_keep_lines(lines, end, long, parts, bits):
+    def keep(lines, end, long, line, lanes, bits):
+        if line * long < np.uint64(len(lines)):
+            keep_lanes(lines, line * long + end, lanes, bits)
+
+    each = (f"keep(lines, end, long, np.uint64({1 + d}), parts[{d}], bits)" for d in range(len(parts)))
+    return unrolled("lines, end, long, parts, bits", *each, np=np, keep=register_jitable(keep))
 
 
 def keep_entries(array, end: int, source, first: int, bits: int, like) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from psph.composition.pair import FOLDED
 from psph.composition.space import FixedPoint
-from psph.engine.jit import elementwise, register_jitable
+from psph.engine.jit import elementwise, overload, register_jitable, tuple_of, unrolled
 from psph.engine.simd import GROUP
 from psph.engine.threads import in_threads
 from psph.particles.store import Store
@@ -121,6 +121,17 @@ def aligned(records: int, width: int, kind) -> np.ndarray:
     room = np.zeros(records * width + line, kind)
     first = -(room.ctypes.data // room.itemsize) % line
     return room[first : first + records * width].reshape(records, width)
+
+
+def numbers_at(numbers, first: int, like: tuple) -> tuple:
+    """As many of the ``numbers`` from the ``first`` on as a vector ``like`` that has components."""
+    return tuple(numbers[first + d] for d in range(len(like)))
+
+
+@overload(numbers_at)
+def _numbers_at(numbers, first, like):
+    parts = (f"numbers[first + {d}]" for d in range(len(like)))
+    return unrolled("numbers, first, like", f"return {tuple_of(parts)}")
 
 
 @elementwise

@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise, overload, tuple_of, unrolled
+from psph.engine.jit import elementwise
 from psph.engine.simd import consecutive, put_consecutive, spread, width_of
 from psph.formula import helper, long_helper
-from psph.particles.records import aligned
+from psph.particles.records import aligned, numbers_at
 from psph.simulation.surface_rows import borne, weighed
 from psph.vectors import add, at, dot, multiply, put, scale, subtract
 
@@ -116,18 +116,6 @@ def bear(first, last, columns, leaders, images, weighing, followed, state, led):
         if followed.many[n].sum():
             take_after(k, followed, n, leaders, images, weighing.rows, state, led, sums)
         put(state.velocity, k, own)
-
-
-def numbers_at(lines, first, like):
-    """As many of the ``lines`` from the ``first`` on as a vector ``like`` that has."""
-    return tuple(lines[first + d] for d in range(len(like)))
-
-
-@overload(numbers_at)
-def _typed_numbers_at(lines, first, like):
-    return unrolled(
-        "lines, first, like", f"return {tuple_of(f'lines[first + {d}]' for d in range(len(like)))}"
-    )
 
 
 @long_helper

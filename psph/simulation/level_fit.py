@@ -14,15 +14,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import overload, register_jitable, uncounted, unrolled
+from psph.engine.jit import overload, uncounted
 from psph.engine.simd import bits, consecutive, spread, total, width_of
 from psph.formula import long_helper
-from psph.particles.lanes import LANES, consecutive_each, keep_entries, keep_lanes
+from psph.particles.lanes import LANES, consecutive_each, keep_entries, keep_lanes, keep_lines
 from psph.simulation.least_squares import factor, solve
 from psph.simulation.level_images import is_near
 from psph.simulation.surface_rows import RowsAtRest
 from psph.smoothing import weight
-from psph.vectors import add, at, dot, multiply, nearest_image, put, subtract
+from psph.vectors import add, at, dot, multiply, nearest_image, put, scale, subtract
 
 FLAT = 0.01
 """Variance of a term of the fit, in spacings, less what terms before it tell, below which it is left out."""
@@ -296,7 +296,7 @@ def keep_weighed(spacing, weighing, room, many, stop):
             w = w * (own / h)
         chosen = above_zero(w) & ((one << min(np.uint64(LANES), stop - entry)) - one)
         keep_entries(room.column, last, room.column, entry, chosen, room.length)
-        keep_terms(room.all_terms, last, long, x_jk, spacing, chosen)
+        keep_lines(room.all_terms, last, long, scale(x_jk, 1.0 / spacing), chosen)
         last = keep_lanes(room.all_weights, last, w, chosen)
     return last
 
@@ -309,23 +309,6 @@ def above_zero(w):
 @overload(above_zero)
 def _typed_above_zero(w):
     return lambda w: bits(w > 0.0)
-
-
-def keep_terms(terms, end, long, x, spacing, chosen):
-    """Write the linear terms of places ``x``, m, to those ``long`` lines of ``terms`` that there are."""
-    for d, along in enumerate(x):
-        if chosen and (1 + d) * int(long) < len(terms):
-            terms[(1 + d) * int(long) + end] = along / spacing
-
-
-@overload(keep_terms)
-def _typed_keep_terms(terms, end, long, x, spacing, chosen):
-    def kept(terms, end, long, line, along, spacing, chosen):
-        if line * long < np.uint64(len(terms)):
-            keep_lanes(terms, line * long + end, along / spacing, chosen)
-
-    lines = (f"kept(terms, end, long, np.uint64({1 + d}), x[{d}], spacing, chosen)" for d in range(len(x)))
-    return unrolled("terms, end, long, x, spacing, chosen", *lines, np=np, kept=register_jitable(kept))
 
 
 @long_helper
