@@ -106,3 +106,20 @@ def find_beside_fluid(first, last, low, lists, loaded, group, is_fluid, beside):
             found = is_fluid[np.uint64(lists.lists[n])] > 0.0
             n += np.uint64(1)
         beside[row] = found
+
+
+@elementwise
+def find_felt(first, last, walls, low, lists, lengths, support, periods, position, is_fluid, felt):
+    """``felt`` of the entries ``first`` to ``last`` of the columns ``walls``: whether fluid of their rows, of
+    whole ``lengths``, is now within the kernel's ``support``, m.  An image in a mirror is farther."""
+    for w in range(np.uint64(first), np.uint64(last)):
+        k = np.uint64(walls[w])
+        row = k - np.uint64(low)
+        n, end = lists.begin[row], lists.begin[row] + np.uint64(lengths[row])
+        found = False
+        while not found and n < end:
+            j = np.uint64(lists.lists[n])
+            x = nearest_image(subtract(at(position, k), at(position, j)), periods)
+            found = is_fluid[j] > 0.0 and dot(x, x) <= support * support
+            n += np.uint64(1)
+        felt[w] = found

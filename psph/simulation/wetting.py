@@ -6,7 +6,14 @@ from psph.engine.threads import in_threads
 from psph.parallel.domain import Domain
 from psph.particles.reach import Reach
 from psph.particles.store import Store
-from psph.particles.wetting import DryRows, find_beside_fluid, find_resting, find_undecided, mark_wet
+from psph.particles.wetting import (
+    DryRows,
+    find_beside_fluid,
+    find_felt,
+    find_resting,
+    find_undecided,
+    mark_wet,
+)
 from psph.simulation.plan import Plan
 
 
@@ -54,10 +61,15 @@ class Wetting:
         self._mark(self._undecided)
 
     def dry_beside_fluid(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
-        """The columns from ``first`` to ``last`` that are dry, list fluid, and bear a load; and the
+        """The columns from ``first`` to ``last`` that are dry, bear a load, and have fluid in reach; and the
         whole lengths of all rows."""
+        s, lengths = self.store, self._rows.lengths
         walls = self._loaded[(self._loaded >= first) & (self._loaded < last)]
-        return walls[self.store[self.effect.marks.name][walls] == 0.0], self._rows.lengths
+        walls = walls[s[self.effect.marks.name][walls] == 0.0]
+        felt, reach = np.zeros(len(walls), bool), (self.reach.support, self.domain.periods)
+        seen = s["position"], s[self.effect.told_by]
+        in_threads(find_felt, 0, len(walls), walls, s.low, self.domain.lists, lengths, *reach, *seen, felt)
+        return walls[felt], lengths
 
     @property
     def longest(self) -> int:

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from psph.particles.neighbours import Neighbours
-from psph.particles.wetting import DryRows, find_beside_fluid, find_resting, find_undecided, mark_wet
+from psph.particles.wetting import (
+    DryRows,
+    find_beside_fluid,
+    find_felt,
+    find_resting,
+    find_undecided,
+    mark_wet,
+)
 
 SUPPORT, SKIN, PERIOD = 1.0, 0.2, 10.0
 
@@ -101,3 +108,15 @@ def test_of_walls_whose_load_is_asked_for_those_that_list_fluid_are_found(loaded
     is_fluid, asked = np.array([0.0, 1.0, 0.0]), np.array([False, loaded])
     find_beside_fluid(0, 3, 0, lists_of(1, 2, 0), asked, groups, is_fluid, found)
     assert found.tolist() == says
+
+
+@pytest.mark.parametrize(
+    ("distance", "is_fluid", "felt"), [(0.99, 1.0, True), (1.01, 1.0, False), (0.9, 0.0, False)]
+)
+def test_a_wall_feels_fluid_within_the_support_alone(distance, is_fluid, felt):
+    position, *_ = a_pair(distance, 0.0, is_fluid)
+    lists, walls, found = lists_of(1, 0), np.array([0], np.uint64), np.zeros(1, bool)
+    find_felt(
+        0, 1, walls, 0, lists, lists.lengths, SUPPORT, (PERIOD,), position, np.array([0.0, is_fluid]), found
+    )
+    assert found.tolist() == [felt]

@@ -62,31 +62,21 @@ class ForceGauge(NamedTuple):
     def _shared(self, simulation) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the particles in whose load another part has a share, and what these parts win of it, or
         lose where it is their own, N (n, dim)."""
-        store, shares = simulation.store, self.corners.shares(simulation)
-        group, ids = store.shown("group"), store.shown("id")
-        rows = np.flatnonzero(store.of_groups(shares.groups))
-        place = np.searchsorted(shares.ids, ids[rows]) % max(len(shares.ids), 1)
-        known = shares.ids[place] == ids[rows]
-        rows, place = rows[known], place[known]
-        force = store.shown("mass")[rows, None] * store.shown("load")[rows]
-        axes = axes_of(simulation)[group[rows]]
-        own, share = store.of_groups(self.groups)[rows], np.zeros_like(force)
+        store, held = simulation.store, self.corners.held(simulation)
+        rows, mass, load = held.rows, store.shown("mass"), store.shown("load")
+        force = mass[rows, None] * load[rows]
+        group = store.shown("group")[rows]
+        axes, own = axes_of(simulation)[group], np.zeros(len(store.kinds))
+        own[list(self.groups)] = 1.0
+        share = np.zeros_like(force)
         for axis in range(store.dimensions):
             along = (force * axes[:, :, axis]).sum(axis=1)
-            bearer = shares.bearers[place, axis, (along < 0.0).astype(int)]
-            won = np.isin(bearer, self.groups).astype(float) - own
-            share += (won * along)[:, None] * axes[:, :, axis]
-        beside, passed = self._passed(store, shares.seams)
-        return np.concatenate([rows, beside]), np.concatenate([share, passed])
-
-    def _passed(self, store, seams) -> tuple[np.ndarray, np.ndarray]:
-        """Rows of the particles beside seams of parts in one plane, and what these parts win by each, N."""
-        ids = store.shown("id")
-        here = np.flatnonzero(np.isin(ids, seams.ids))
-        here = here[np.argsort(ids[here])]
-        force = store.shown("mass")[here, None] * store.shown("load")[here]
-        told, share = seams.won(ids[here], force, self.groups)
-        return here[told], share
+            bearer = held.shares.bearers[held.place, axis, (along < 0.0).astype(int)]
+            share += ((own[bearer] - own[group]) * along)[:, None] * axes[:, :, axis]
+        beside = held.beside
+        pushed = mass[beside, None] * load[beside]
+        told, passed = held.shares.seams.won(store.shown("id")[beside], pushed, self.groups)
+        return np.concatenate([rows, beside[told]]), np.concatenate([share, passed])
 
     def _places(self, simulation, held: np.ndarray) -> np.ndarray:
         """Where the particles ``held`` are, m (n, dim): those that move as one beside each other."""
