@@ -191,6 +191,10 @@ class Kind:
         scene where effects evolve fields."""
         return 1
 
+    def waiting(self, plan: Any) -> float:
+        """How many particles of a run by a ``plan`` have no sums in a step, on the mean."""
+        return 0.0
+
     @property
     def reads(self) -> tuple[str, ...]:
         """What its work reads of neighbours of what materials fix (psph.fields.OF_MATERIAL)."""

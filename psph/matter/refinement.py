@@ -5,7 +5,7 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 import numpy as np
 
 from psph.fields import Field
-from psph.kinds import Created, Kind
+from psph.kinds import Created, Kind, count_of
 from psph.particles.sizes import Sizes
 from psph.scene.levels import CORNER, DIVIDED, LENGTH, SHARE, SLOPE, Levels
 from psph.scene.particles import settled_at
@@ -69,6 +69,12 @@ class Refinement(Kind):
     def pace(self) -> int:
         """Each level takes twice the step of the next finer one."""
         return 2 ** (self.levels.count - 1 - getattr(self.scene, "level", 0))
+
+    def waiting(self, plan) -> float:
+        """Those of levels whose steps are longer than the finest."""
+        finer = [self._starting(level) for level in range(1, self.levels.count)]
+        starting = [count_of(self.scene) - sum(finer), *finer]
+        return sum(n * (1.0 - 1.0 / one.pace) for n, one in zip(starting, (plan, *plan.finer)))
 
     @property
     def reads(self) -> tuple[str, ...]:

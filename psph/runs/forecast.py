@@ -43,7 +43,8 @@ def forecast(scene, plan: Plan, ranks: int) -> Forecast:
     )
     neighbours = sites_within(scene, scene.support)
     each = PARTICLE + neighbours * flops * FLOP
-    return Forecast(steps, limit, steps * (STEP + each * count_of(scene) / ranks))
+    summed = count_of(scene) - sum(kind.waiting(plan) for kind in plan.matter)
+    return Forecast(steps, limit, steps * (STEP + each * summed / ranks))
 
 
 def forecast_lines(found: Forecast, ranks: int, end: float) -> Iterator[str]:

@@ -57,6 +57,14 @@ def test_the_guess_is_within_a_factor_of_what_was_measured(name):
     assert 0.5 < found.seconds / MEASURED[name] < 2.0
 
 
+def test_levels_of_longer_steps_take_less_of_each():
+    """The slot: about a minute on one core, of 14,836 particles with steps four times as long, 3,024 twice."""
+    scene = Scene(load(CASES / "refined/slot.toml"))
+    plan = make_plan(scene)
+    assert sum(kind.waiting(plan) for kind in plan.matter) == 0.75 * 14_836 + 0.5 * 3_024
+    assert 0.5 < forecast(scene, plan, 1).seconds / 60.0 < 2.0
+
+
 def test_a_gas_that_falls_together_is_expected_to_be_heated_by_that():
     """The run has 249 steps; 21 as hot as it starts, which without a pull is all that is known."""
     scene = Scene(load(CASES / "gravity/collapse.toml"))
