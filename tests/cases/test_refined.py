@@ -249,18 +249,19 @@ def swung(folder, off, periods=2):
 @LONG
 @pytest.mark.parametrize("off", [0.0, 0.02, 0.04])
 def test_a_wave_through_borders_at_its_nodes_keeps_what_one_spacing_keeps(off, tmp_path):
-    """One spacing of 0.08 m keeps 0.90, of 0.04 m 0.95; through borders 0.93 to 0.95 is left.  Six of 600
-    coarse ones are the most that lead too little."""
+    """One spacing of 0.08 m keeps 0.90, of 0.04 m 0.95; through borders 0.92 to 0.95 is left.  Six and
+    a half of 600 coarse ones are the most that lead too little or too many."""
     kept, strayed, _ = swung(tmp_path, off)
     assert 0.915 < kept < 0.96
-    assert strayed < 6.5 / 600.0
+    assert strayed < 7.5 / 600.0
 
 
 @LONG
 @pytest.mark.parametrize("off", [0.0, 0.04])
 def test_waves_carry_no_water_out_of_the_finer_part(off, tmp_path, monkeypatch):
-    """Six periods.  The control: whoever sees the end of a margin steps aside too, and dies behind it."""
-    assert swung(tmp_path, off, 6)[2] == pytest.approx(1.0, abs=0.005)
+    """Six periods: 1.003 on average of 18 runs, 0.995 to 1.011, by the place of the border and by the order of
+    sums.  The control: whoever sees the end of a margin steps aside too, and dies behind it: 0.972."""
+    assert swung(tmp_path, off, 6)[2] == pytest.approx(1.0, abs=0.015)
     monkeypatch.setattr(levels.Resizing, "_steps_aside", lambda self, where, level: np.ones(len(level)))
     assert swung(tmp_path, off, 6)[2] < 0.98
 
