@@ -1,10 +1,12 @@
 """Walls in the margin of a region, where nobody feels them, and walls along which nothing slips."""
 
 import numpy as np
-from cases.test_refined import leading
+import pytest
+from cases.test_refined import STILL, leading
 from drafts import draft
 from gauging import start
 
+from psph.kinds import kinds_in
 from psph.output.gauges import gauges_of
 from psph.scene import Scene
 from psph.simulation import levels
@@ -185,3 +187,68 @@ def test_walls_on_whose_faces_a_region_ends_bear_the_water(tmp_path, monkeypatch
     )  # measured 0.006
     monkeypatch.setattr(levels, "MAY", -1.0)
     assert abs(weight_on_the_floor(tmp_path / "control", ON_FACES, 0.04) / told - 1.0) > 0.015  # 0.018
+
+
+SINKS = """
+time.end = 0.375
+[space]
+dimensions = 2
+spacing = 0.04
+refine = [{ shape.box = { lower = [-0.2, -0.2], upper = [1.4, 0.4] } }]
+[physics]
+gravity = [0.0, -9.81]
+sound_speed = 40.0
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.2, 0.8] }
+shape.difference.minus = [
+  { box = { lower = [0.4, 0.2], upper = [0.64, 0.32] } },
+  { box = { lower = [0.4, 0.56], upper = [0.64, 0.68] } },
+]
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.16, -0.16], upper = [1.36, 1.2] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.2, 1.2] } }]
+[walls.low]
+shape.box = { lower = [0.4, 0.2], upper = [0.64, 0.32] }
+[walls.up]
+shape.box = { lower = [0.4, 0.56], upper = [0.64, 0.68] }
+motion = { translation = [0.0, -0.4], ramp = 0.05 }
+[gauges.up.force]
+on = ["up"]
+"""
+"""A block sinks onto another; a border lies between the two."""
+
+
+def hardest(folder):
+    """The largest mean over 25 ms of the push upwards on the block that sinks, over its buoyancy, from 0.3 s
+    on."""
+    case = draft(folder, SINKS)
+    simulation, [gauge], found = start(case), gauges_of(Scene(case)).values(), []
+    while simulation.time < 0.375:
+        simulation.step(0.375)
+        found.append((simulation.time, gauge.row(simulation)[1] / (9810.0 * 0.24 * 0.12)))
+    times, pushes = np.array(found).T
+    return max(pushes[(times > t) & (times < t + 0.025)].mean() for t in (0.3, 0.325, 0.35))
+
+
+def test_a_wall_just_beyond_the_region_of_its_level_follows(tmp_path, monkeypatch):
+    """With the finer spacing all over 1.58, with the coarse one 1.71.  The control: its density goes on by the
+    rates of those who follow there."""
+    assert hardest(tmp_path) < 2.7  # measured 2.35
+    monkeypatch.setattr(levels, "BEYOND", 1.0)
+    assert hardest(tmp_path) > 3.0  # 3.43
+
+
+@pytest.mark.parametrize(
+    "beside, told",
+    [(0.02, ["space.refine[0].shape: ends 0.02 m beside box, with which it goes"]), (0.15, [])],
+)
+def test_a_region_that_ends_close_to_what_it_goes_with_is_warned_of(beside, told, tmp_path):
+    case = draft(
+        tmp_path,
+        STILL.replace("FACTOR", "2"),
+        f"space.refine=[{{shape={{box={{lower=[{0.8 - beside},-0.1],upper=[1.4,0.6]}}}},moves_with='box'}}]",
+        "bodies.box={shape={box={lower=[0.8,0.1],upper=[1.2,0.4]}},density=500}",
+    )
+    warned = [line for kind in kinds_in(Scene(case)) for line in kind.warnings() if "refine" in line]
+    assert [line.partition(": coarse water")[0] for line in warned] == told
