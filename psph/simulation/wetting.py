@@ -45,7 +45,7 @@ class Wetting:
         self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
         self._each(find_resting, s.group, materials.free, self._rows.rest)
-        if materials.loaded is not None:
+        if materials.loaded is not None and not self.plan.finer:
             beside = np.zeros(s.owned, bool)
             self._each(find_beside_fluid, materials.loaded, s.group, s[self.effect.told_by], beside)
             self._loaded = np.uint64(s.low) + np.flatnonzero(beside & self._rows.rest).astype(np.uint64)

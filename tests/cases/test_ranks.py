@@ -99,6 +99,8 @@ END = {
     "refined/heaving_sphere": 0.005,
     "refined/dam_break": 0.05,
     "refined/slot": 0.008,
+    "refined/dam_break_on_box": 0.008,
+    "refined/pile_in_waves": 0.01,
     "ends/open_poiseuille": 0.15,
     "ends/open_channel": 0.15,
     "ends/nozzle": 0.12,
