@@ -75,7 +75,8 @@ class FaceShares:
         groups, beside = self._domain.groups(), np.zeros(store.owned, bool)
         find_beside(store.owned, store.low, lists, self._loaded[groups], beside)
         group = groups[store.inner]
-        fluid, loaded = self._fluid_of[group] & beside, self._loaded[group] & (lists.lengths[: store.owned] > 0)
+        fluid = self._fluid_of[group] & beside
+        loaded = self._loaded[group] & (lists.lengths[: store.owned] > 0)
         rows = np.flatnonzero(fluid | loaded)
         where = np.stack([x[store.inner][rows] for x in store["listed_position"]], axis=1)
         level, inside = self._level_of[group[rows]], self._domain.inside(where)

@@ -37,7 +37,7 @@ class Shares(NamedTuple):
     seams: Seams
 
 
-class Held(NamedTuple):
+class Sharers(NamedTuple):
     """This rank's particles with a share: ``rows`` (n,) of its store, the ``place`` (n,) of each among
     ``shares``, and the rows ``beside`` (k,) seams, in the order of their ids."""
 
@@ -65,20 +65,20 @@ class Corners:
         self.crossing = np.array(crossing)
         self._placed: np.ndarray | None = None
         self._shares: Shares | None = None
-        self._held: tuple[int, Held] | None = None
+        self._sharers: tuple[int, Sharers] | None = None
 
-    def held(self, simulation) -> Held:
+    def sharers(self, simulation) -> Sharers:
         """Where those of :meth:`shares` are on this rank, looked up again with new lists; collective."""
         shares, store, rebuilds = self.shares(simulation), simulation.store, simulation.domain.rebuilds
-        if self._held is None or self._held[0] != rebuilds or self._held[1].shares is not shares:
+        if self._sharers is None or self._sharers[0] != rebuilds or self._sharers[1].shares is not shares:
             ids = store.shown("id")
             rows = np.flatnonzero(store.of_groups(shares.groups))
             place = np.searchsorted(shares.ids, ids[rows]) % max(len(shares.ids), 1)
             known = shares.ids[place] == ids[rows]
             beside = np.flatnonzero(np.isin(ids, shares.seams.ids))
             beside = beside[np.argsort(ids[beside])]
-            self._held = rebuilds, Held(shares, rows[known], place[known], beside)
-        return self._held[1]
+            self._sharers = rebuilds, Sharers(shares, rows[known], place[known], beside)
+        return self._sharers[1]
 
     def shares(self, simulation) -> Shares:
         """Of the particles where parts meet now, the same on every rank; collective."""

@@ -62,7 +62,7 @@ class ForceGauge(NamedTuple):
     def _shared(self, simulation) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the particles in whose load another part has a share, and what these parts win of it, or
         lose where it is their own, N (n, dim)."""
-        store, held = simulation.store, self.corners.held(simulation)
+        store, held = simulation.store, self.corners.sharers(simulation)
         rows, mass, load = held.rows, store.shown("mass"), store.shown("load")
         force = mass[rows, None] * load[rows]
         group = store.shown("group")[rows]
