@@ -17,7 +17,7 @@ class Clocks:
     def __init__(self, monkeypatch):
         self.wall = self.cpu = 0.0
         monkeypatch.setattr(busy, "perf_counter", lambda: self.wall)
-        monkeypatch.setattr(busy, "process_time", lambda: self.cpu)
+        monkeypatch.setattr(busy, "thread_time", lambda: self.cpu)
 
     def work(self, seconds, share):
         self.wall += seconds
