@@ -1,5 +1,6 @@
 """Regions with finer particles: what they add to a scene (psph.kinds)."""
 
+import math
 from collections.abc import Container, Iterator, Mapping, Sequence
 
 import numpy as np
@@ -177,8 +178,10 @@ class Refinement(Kind):
                 continue
             least, most = bounds(layout.case.boundaries[one.moves_with].shape)
             lower, upper = bounds(one.shape)
-            ends = *zip(least, lower), *zip(upper, most)
-            near = min(a - b for a, b in ends)
+            # Nothing comes in where the region goes on to an end of the domain, such as a mirror.
+            below = [a - b for a, b, end in zip(least, lower, layout.lower) if b > end]
+            above = [b - a for a, b, end in zip(most, upper, layout.upper) if b < end]
+            near = min(*below, *above, math.inf, math.inf)
             dx = self.levels.spacing(one.levels - 1)
             if 0.0 <= near < CLEAR * dx:
                 yield (

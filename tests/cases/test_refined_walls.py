@@ -252,3 +252,12 @@ def test_a_region_that_ends_close_to_what_it_goes_with_is_warned_of(beside, told
     )
     warned = [line for kind in kinds_in(Scene(case)) for line in kind.warnings() if "refine" in line]
     assert [line.partition(": coarse water")[0] for line in warned] == told
+
+
+def test_a_region_that_goes_on_to_a_mirror_is_not_warned_of(tmp_path):
+    """Half of a body, and of its region, beside a plane of symmetry: nothing comes in there."""
+    region = "space.refine=[{shape={box={lower=[0.0,-0.2],upper=[0.8,0.7]}},moves_with='box'}]"
+    body = "bodies.box={shape={box={lower=[0.0,0.1],upper=[0.4,0.4]}},density=500}"
+    domain = ["space.lower=[0.0,-0.2]", "space.upper=[2.2,1.2]", "space.symmetry=['x.lower']"]
+    kinds = kinds_in(Scene(draft(tmp_path, STILL.replace("FACTOR", "2"), region, body, *domain)))
+    assert not [line for kind in kinds for line in kind.warnings() if "refine" in line]
