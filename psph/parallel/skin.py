@@ -43,6 +43,30 @@ REMEMBERED = (
 """What is known of the lists since they were made, and of the step before."""
 
 
+def nearer(planes: Sequence[Plane]) -> float:
+    """By how much an image may be nearer than its particle, over how far one is beyond one of the ``planes``.
+
+    Their distances squared differ by 4 d_i d_j, d those from the plane; √n times as much in a corner of n.
+    """
+    return 2.0 * len({plane.axis for plane in planes}) ** 0.5
+
+
+def beyond(domain: Domain, planes: Sequence[Plane], velocity: str) -> tuple[float, float]:
+    """How far this rank's particles are beyond one of the ``planes``, m, negative before it, and how fast
+    they go there by the field ``velocity``, m/s, at the most; of those that were before it when they were
+    listed."""
+    store, farthest, fastest = domain.store, -math.inf, -math.inf
+    for plane in planes:
+        x, listed, v = (
+            store[name][plane.axis][store.inner] for name in ("position", "listed_position", velocity)
+        )
+        way = plane.side * (x - plane.at)
+        near = (way > -NEAR_PLANE * domain.cutoff) & (plane.side * (listed - plane.at) <= 0.0)
+        farthest = max(farthest, float(way[near].max(initial=-math.inf)))
+        fastest = max(fastest, float((plane.side * v[near]).max(initial=-math.inf)))
+    return farthest, fastest
+
+
 class Bounds(NamedTuple):
     """Between which widths, m, a skin is chosen, for pairs within ``support`` m in so many ``dimensions``,
     which a step goes through in so many ``passes``.
@@ -104,20 +128,16 @@ class Skin:
     2 a (t + Δt)), with the fastest shift s of a particle beside its velocity.  The predicted velocity
     that is measured still contains half a step of the acceleration before, and lacks half a step of
     the present one: a is the largest of both and of all since, Δt the longest of these steps.
-    An image in one of the ``planes`` is farther away than its particle, which is listed: their distances
-    squared differ by 4 d_i d_j, d those from the plane.  So images count only where a particle is beyond a
-    plane, twice as far as that, √n times as much in a corner of n planes.  No particle is more than
-    ``farthest`` m from where it was listed.  The same on every rank.
-    With ``bounds`` the skin is as wide as pays by how long the last lists have served.
-    """
+    An image in one of the ``planes`` is farther away than its particle, which is listed.  So images count
+    only where a particle is beyond a plane (:func:`nearer`).  No particle is more than ``farthest`` m from
+    where it was listed.  The same on every rank. With ``bounds`` the skin is as wide as pays by how long the
+    last lists have served."""
 
     def __init__(
         self, domain: Domain, width: float, planes: Sequence[Plane] = (), bounds: Bounds | None = None
     ):
         self.domain, self.width, self._planes, self._bounds = domain, width, planes, bounds
-        self._nearer = (
-            2.0 * len({plane.axis for plane in planes}) ** 0.5
-        )  # an image, over how far one is beyond
+        self._nearer = nearer(planes)
         self._shortest = min((p for p in domain.periods if p is not None), default=math.inf)
         self._before = [0.0, 0.0]
         self.renew()
@@ -220,25 +240,10 @@ class Skin:
         )
         # Ghosts are in the boxes, so that a pair across two slabs is seen by at least one of their ranks.
         mine = largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic)
-        across = self._across_planes() if self._planes else ()
+        across = beyond(self.domain, self._planes, "predicted_velocity") if self._planes else ()
         apart, closing, drifted, *across = largest(domain.comm, [*mine, *across]).tolist()
         if across:
             self._beyond, self._crossing = across
         self._apart, self._closing = apart**0.5, closing**0.5
         self.drifted = drifted**0.5
         self._since = 0.0
-
-    def _across_planes(self) -> tuple[float, float]:
-        """How far this rank's particles are beyond a mirror, m, negative before it, and how fast they go
-        there, m/s, at the most; of those that were before it when they were listed."""
-        store, beyond, crossing = self.domain.store, -math.inf, -math.inf
-        for plane in self._planes:
-            x, listed, v = (
-                store[name][plane.axis][store.inner]
-                for name in ("position", "listed_position", "predicted_velocity")
-            )
-            way = plane.side * (x - plane.at)
-            near = (way > -NEAR_PLANE * self.domain.cutoff) & (plane.side * (listed - plane.at) <= 0.0)
-            beyond = max(beyond, float(way[near].max(initial=-math.inf)))
-            crossing = max(crossing, float((plane.side * v[near]).max(initial=-math.inf)))
-        return beyond, crossing

@@ -54,7 +54,7 @@ class Neighbourhood:
         if not self.plan.passes:
             return Unlisted()
         if self.plan.sizes is not None:
-            return Straying(self.domain, self.plan.sizes, not self.planes)
+            return Straying(self.domain, self.plan.sizes, self.planes)
         bounds, self.domain.reach = None, reach.support + reach.first
         if reach.least is not None:
             passes = 1 if self.plan.midway is None else 2

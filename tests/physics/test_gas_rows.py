@@ -152,6 +152,41 @@ def test_lists_serve_while_neighbours_go_together(tmp_path, waves, holds):
         assert lacking_in_periods(simulation) == 0
 
 
+@pytest.mark.parametrize(("beyond", "holds"), [(0.0, True), (0.02, True), (0.05, False)])
+def test_lists_serve_beside_mirrors(tmp_path, beyond, holds):
+    """All go on by much in the middle and nobody at the mirrors, but one that crosses a mirror, by a part of its
+    support: images of those across from there come nearer than they stood."""
+    mirrored = BOX.replace('periodic = ["x", "y"]', 'periodic = ["y"]\nsymmetry = ["x.lower", "x.upper"]')
+    (tmp_path / "box.toml").write_text(mirrored)
+    simulation = start(load(tmp_path / "box.toml"))
+    store, straying = simulation.store, simulation.neighbourhood.skin
+    support = 2.0 * 1.4 * 0.05
+    x = store["position"][0][store.inner]
+    x += 0.2 * support * np.sin(np.pi * x / 4.0)
+    nearest = np.argmin(x)
+    x[nearest] = -beyond * support if beyond else x[nearest]
+    assert straying.reach() == holds
+    if holds:
+        simulation.listed = True
+        find_sizes(simulation)
+        assert lacking_images(simulation) == 0
+
+
+def lacking_images(simulation):
+    """How many pairs of a particle and another's image in the mirror at x = 0 are in reach but not in the lists."""
+    store, lists = simulation.store, simulation.domain.lists
+    x, h = store.shown("position"), store.shown("smoothing_length")
+    apart = x[:, None] - x * [-1.0, 1.0]
+    apart[:, :, 1] -= np.rint(apart[:, :, 1])
+    near = (apart**2).sum(axis=2) < (2.0 * np.maximum(h[:, None], h)) ** 2
+    np.fill_diagonal(near, False)
+    assert near.sum() > 100
+    for k in range(store.owned):
+        begin = int(lists.begin[k])
+        near[k, lists.lists[begin : begin + int(lists.lengths[k])].astype(int) - store.low] = False
+    return int(near.sum())
+
+
 def lacking_in_periods(simulation):
     """How many pairs in reach the lists lack, of particles and the nearest images of others."""
     store = simulation.store
