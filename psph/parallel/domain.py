@@ -58,9 +58,8 @@ class Domain:
     """The slab of one rank, its ghosts and its neighbour lists.
 
     ``cutoff`` is the kernel's support and the widest skin together, m, and follows the largest particle where
-    sizes differ; lists name who is within ``reach``, m, which may be less.  ``travels`` says what
-    ghosts need;
-    ``lanes`` is how many entries of a list the pair loop takes at once, None where there is no such loop
+    sizes differ; lists name who is within ``reach``, m, which may be less, and where levels of sizes do not see
+    each other rows of ``others`` those of other levels.  ``travels`` says what ghosts need; ``lanes`` is how many entries of a list the pair loop takes at once, None where there is no such loop
     and nothing to list.
     """
 
@@ -85,7 +84,7 @@ class Domain:
         self.grid: Grid | None = None
         self.halo: Halo | None = None
         self.starts = np.zeros(1, np.int64)
-        self.lists = neighbours.empty(0, 0)
+        self.lists = self.others = neighbours.empty(0, 0)
         self._fill = settled(neighbours.fill_lists)
         self.rebuilds = 0
 
@@ -152,7 +151,7 @@ class Domain:
             store, listed = self.store, self.store[self.sizes.listed]
             across = self.sizes.looks_across(store.group[: store.total])
             told = store["position"], listed, across, self.sizes, self._slab(), lanes, sought
-            self.lists = list_by_levels(self._used_lists(), *told)
+            self.lists, self.others = list_by_levels(self._used_lists(), *told)
             return
         self.lists = neighbours.build(
             self._used_lists(),
@@ -205,6 +204,7 @@ class Domain:
         """The old lists, to be filled again, and given back where they are too short."""
         # The domain lets go of them, or both would be held while longer ones are made.
         room, self.lists = self.lists, neighbours.empty(0, 0)
+        self.others = self.lists
         return room
 
     def _partner(self, step: int) -> int:

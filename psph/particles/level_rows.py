@@ -5,26 +5,27 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.engine.jit import inside
+from psph.particles.neighbours import Sought
 
 
 class OwnedRows(NamedTuple):
     """Rows to fill: of the ``owned`` columns from ``low`` on, up to a ``multiple`` of entries;
     ``across`` (n,) says who of the grids looks beyond its own level.  ``own`` is 1 where a particle also sees
-    as far as it reaches itself, and 0 where only as far as others do.  ``sought`` (n + 1,) is how many of the
-    grids before each everyone looks for: who has none in the cells around lists nobody; empty where everyone
-    lists everyone."""
+    as far as it reaches itself, and 0 where only as far as others do.  ``sought`` are those whom each row
+    must name, counted in the order of the grids."""
 
     low: int
     owned: int
     multiple: int
     across: np.ndarray
     own: float
-    sought: np.ndarray
+    sought: Sought
 
 
 @inside
 def holds_sought(sought, ranges, least, most):
-    """Whether ``ranges`` from number ``least`` to before ``most`` hold anyone ``sought``, or all are."""
+    """Whether ``ranges`` from number ``least`` to before ``most`` hold anyone, by how many are ``sought``
+    before each (n + 1,); True where nobody is told."""
     found = len(sought) == 0
     for r in range(least, most):
         found = found or sought[ranges[r, 1]] > sought[ranges[r, 0]]

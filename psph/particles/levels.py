@@ -16,7 +16,7 @@ from psph.particles.lanes import LANES
 from psph.particles.level_candidates import Gathered, append_row, box_around, gather, room_for
 from psph.particles.level_ranges import AXES, BITS, FARTHEST, WIDER, candidates, extent, of_level
 from psph.particles.level_rows import OwnedRows, holds_sought, looks, owns
-from psph.particles.neighbours import Neighbours, empty, entries_for
+from psph.particles.neighbours import Neighbours, Sought, empty, entries_for, finds
 from psph.particles.sizes import Sizes
 from psph.particles.store import SPARE
 
@@ -83,31 +83,34 @@ class Grids(NamedTuple):
 
 def list_by_levels(
     room: Neighbours, position, listed, across: np.ndarray, sizes: Sizes, slab: Slab, lanes: int, sought=None
-) -> Neighbours:
-    """Lists of the owned particles: of all that are nearer than the larger reach of both, or than the reach
-    of these where ``sizes`` ask for that.
+) -> tuple[Neighbours, Neighbours]:
+    """Lists of the owned particles: of all that are nearer than the larger reach of both, and nobody else's;
+    or, where ``sizes`` ask for that, those of its own level, and of others than its own, as far as these
+    reach.
 
     ``position`` are component arrays and ``listed`` the smoothing lengths, m, of all columns; who does not
     look ``across`` (columns,) lists its own level alone.  Where ``sought`` is given (columns,) a row stays
-    empty that has no column above 0 in the cells around.  Rows are filled up to a multiple of ``lanes`` with
-    the particle itself.  ``room`` is used again where it is large enough.
+    empty that names no column above 0, but for those of such columns.  Rows are filled up to a multiple of
+    ``lanes`` with the particle itself.  ``room`` is used again where it is large enough.
     """
     if not slab.owned:
-        return empty(0, 0)
+        return empty(0, 0), empty(0, 0)
     total = slab.low + slab.owned + slab.high
     grids = grids_of([x[:total] for x in position], sizes.reach(listed[:total]), slab)
-    columns, before = grids.columns[:total], np.zeros(0 if sought is None else total + 1, np.int64)
+    columns, seek = grids.columns[:total], Sought.none()
     if sought is not None:
-        np.cumsum(sought[columns] > 0.0, out=before[1:])
+        wanted = sought[:total] > 0.0
+        seek = Sought.among(wanted[columns])._replace(one=wanted)
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
-    rows, most = OwnedRows(slab.low, slab.owned, lanes, across[columns], float(sizes.mutual), before), GROUPS
+    others, most = empty(0 if sizes.mutual else slab.owned, 0), GROUPS
+    rows = OwnedRows(slab.low, slab.owned, lanes, across[columns], float(sizes.mutual), seek)
     while True:
         work = [work_room(most, len(position)) for _ in range(threads())]
-        needed = in_rooms(fill_levels, 0, len(grids.keys), work, grids, rows, room)
+        needed = in_rooms(fill_levels, 0, len(grids.keys), work, grids, rows, room, others)
         if not any(needed):
-            return room
+            return room, others._replace(lists=room.lists)
         most = max(most, *(-2 * n for n in needed))
         if max(needed) > 0:
             room = room._replace(lists=entries_for(max(needed) + max(needed) // SURPLUS))
@@ -215,10 +218,11 @@ def work_room(groups: int, dimensions: int) -> tuple:
 
 
 @uncounted
-def fill_levels(first, last, grids, rows, room, ranges, corners, near):
+def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
     """Fill the rows of those particles in the cells ``first`` to ``last`` that a rank owns; returns 0, or
     about how many entries are needed for all, or, with a minus, how many groups of candidates; ``ranges``
-    (groups, 2), ``corners`` (2, 3) and ``near`` are room too.
+    (groups, 2), ``corners`` (2, 3) and ``near`` are room too.  Where there are rows of ``others`` than those
+    of a particle's own level each stands behind that of these, and is empty where that stays empty.
 
     Cells take the part of the ``room`` that is their part of the particles.
     """
@@ -240,8 +244,8 @@ def fill_levels(first, last, grids, rows, room, ranges, corners, near):
             return -np.int64(max(many, held // LANES + 1))
         least, most = of_level(grids, level, ranges, many)
         # By the ranges of a row alone: whether others in the cell look across is known of owned ones only.
-        own = holds_sought(rows.sought, ranges, least, most)
-        every = holds_sought(rows.sought, ranges, 0, many)
+        own = holds_sought(rows.sought.before, ranges, least, most)
+        every = holds_sought(rows.sought.before, ranges, 0, many)
         if every:
             box, within2 = box_around(low, high, grids.origin, grids.periods), rows.own * reach * reach
             found = gather(grids, ranges, many, (least, most), members, box, within2, near)
@@ -256,14 +260,23 @@ def fill_levels(first, last, grids, rows, room, ranges, corners, near):
                 done = np.int64(m) - starts[first] + 1
                 guess = (np.int64(end) - begun + found.end) * starts[len(starts) - 1] // done
                 return max(guess, len(entries)) + found.end + LANES + rows.multiple
-            begin = end
-            if every if rows.across[m] else own:
-                itself = np.uint64(found.itself + np.int64(m) - members[0])
-                part = (np.int64(0), found.end) if rows.across[m] else (found.first, found.last)
-                within2 = rows.own * grids.within2[m]
-                end = append_row(entries, end, itself, within2, near, grids.periods, *part)
+            begin, named = end, every if rows.across[m] else own
+            itself, within2 = np.uint64(found.itself + np.int64(m) - members[0]), rows.own * grids.within2[m]
+            told = itself, within2, near, grids.periods
+            if named:
+                all_levels = rows.across[m] and row >= len(others.begin)
+                part = (np.int64(0), found.end) if all_levels else (found.first, found.last)
+                end = append_row(entries, end, *told, *part)
+                named = finds(rows.sought, k, entries, begin, end)
+                end = end if named else begin
             room.begin[row], room.lengths[row] = begin, end - begin
             while (end - begin) % np.uint64(rows.multiple) != np.uint64(0):
                 entries[end] = k
                 end += one
+            if row < len(others.begin):
+                begin = end
+                if named and rows.across[m]:
+                    end = append_row(entries, end, *told, np.int64(0), found.first)
+                    end = append_row(entries, end, *told, found.last, found.end)
+                others.begin[row], others.lengths[row] = begin, end - begin
     return np.int64(0)

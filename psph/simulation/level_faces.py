@@ -11,7 +11,7 @@ much.
 import numpy as np
 
 from psph.composition.reflections import BELOW
-from psph.particles.level_lists import find_beside
+from psph.particles.named_rows import find_beside
 from psph.particles.neighbours import Neighbours
 from psph.physics.motion import deforms, is_rigid
 from psph.physics.rigid.pose import PLACE

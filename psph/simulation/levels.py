@@ -13,7 +13,7 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_rooms, in_threads, threads
 from psph.fields import seen_at, view_of
 from psph.parallel.reductions import all_rows, whole_sums
-from psph.particles.level_lists import Membership, keep_level, rows_that_name
+from psph.particles.named_rows import Naming, find_beside
 from psph.particles.neighbours import empty
 from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
 from psph.simulation.following import OfLeaders, WhoIsLed, bear, follow, tell_rows
@@ -98,7 +98,8 @@ class Resizing(Work):
         self._weighing = Weighed(unit, cell, tuple(scene.layout.periods), ORDER, rows_of(scene), TIPS)
         self._follow, self._bear, self._go = map(settled, (follow, bear, go_along))
         self._find, self._tell = map(settled, (find_leaders, tell_rows))
-        self._lanes, self._mirrors = rank.plan.space.lanes, rank.plan.mirrors
+        self._others, self._alike, self._walls = Naming(1), Naming(1), Naming(1)
+        self._pushing, self._mirrors = Naming(rank.plan.space.lanes), rank.plan.mirrors
         if any(plane.motion for plane in rank.plan.planes):
             self._mirrors = self._mirrors._replace(reach=math.inf)  # wherever they go
         self.columns, self._aside, self._flowing = np.zeros(0, np.int64), np.zeros(0), 0
@@ -181,27 +182,24 @@ class Resizing(Work):
         return ids, group, block
 
     def listed(self) -> None:
-        """Pairs of one level stay in the lists; who follows has rows of those who lead on other levels, and
-        what bears a load of those on its own."""
+        """Who follows has rows of those who lead on its own level and on others, and of walls; what bears a
+        load of the fluid on its own."""
         group = self.domain.groups()
         fluid, level = self.fluid_of[group], self.level_of[group]
         follows, leads = self.follows[group], fluid & ~self.follows[group]
         store, lists = self.store, self.domain.lists
-        listed, of = tuple(store["listed_position"]), Membership(level, leads)
-        rows = lists, store.low, store.owned, of
+        listed, owned = tuple(store["listed_position"]), (store.low, store.owned)
         stands, may = self._stands(group, level, listed)
-        others = rows_that_name(*rows, follows | may, False, 1)
+        others = self._others.find(self.domain.others, *owned, leads, follows | may)
         beside, shares = np.zeros((2, store.owned), bool)
-        keep_level(store.owned, store.low, lists, level.astype(np.uint8), leads, beside)
+        find_beside(store.owned, store.low, lists, leads, beside)
         stands[store.inner] |= may[store.inner] & ~beside & (others.lengths > 0)
         if self._loaded is not None:
             shares = self._shares.tell(lists)
-            everyone = lists, store.low, store.owned, Membership(level, fluid)
-            pushing = rows_that_name(*everyone, self._loaded[group], True, self._lanes)
+            pushing = self._pushing.find(lists, *owned, fluid, self._loaded[group])
             self._loops.push_by(pushing, self._mirrors)
-        alike = rows_that_name(*rows, follows | stands, True, 1)
-        solid = lists, store.low, store.owned, Membership(level, ~fluid)
-        walls = rows_that_name(*solid, follows, True, 1)
+        alike = self._alike.find(lists, *owned, leads, follows | stands)
+        walls = self._walls.find(lists, *owned, ~fluid, follows)
         beside, inner = beside | shares, group[store.inner]
         stands = stands[store.inner]
         following, told = self.follows[inner] | stands, self.plan.materials.given_pressure[inner]

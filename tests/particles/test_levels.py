@@ -41,7 +41,7 @@ def test_lists_have_all_neighbours_and_no_others(dimensions, ratio, periodic):
     periods = (None, *[1.0 if periodic else None] * (dimensions - 1))
     cutoff = SIZES.reach(length.max())
     slab = Slab(0, 0.0, 1.0, 0, n, 0, periods, (0.0,) * dimensions, cutoff)
-    lists = list_by_levels(
+    lists, _ = list_by_levels(
         empty(0, 0), tuple(position), length, np.ones(len(length), np.bool_), SIZES, slab, 4
     )
     expected = all_pairs(position, length, periods)
@@ -60,7 +60,7 @@ def test_too_little_room_is_made_larger(monkeypatch):
 
     def rows():
         looks = np.ones(n, np.bool_)
-        lists = list_by_levels(empty(0, 0), tuple(position), length, looks, SIZES, slab, 4)
+        lists, _ = list_by_levels(empty(0, 0), tuple(position), length, looks, SIZES, slab, 4)
         return [lists.lists[b : b + m].tolist() for b, m in zip(lists.begin[:n], lists.lengths[:n])]
 
     expected = rows()
@@ -82,7 +82,9 @@ def test_a_cell_ends_with_its_level():
     """The first cell of the finer level has a number by one lower than the last of the coarser."""
     length = np.array([1.0, 0.5]) / SIZES.reach(1.0)
     slab = Slab(0, 0.0, 2.0, 0, 2, 0, (None,), (0.0,), 1.0)
-    lists = list_by_levels(empty(0, 0), (np.array([1.1, 0.3]),), length, np.ones(2, np.bool_), SIZES, slab, 1)
+    lists, _ = list_by_levels(
+        empty(0, 0), (np.array([1.1, 0.3]),), length, np.ones(2, np.bool_), SIZES, slab, 1
+    )
     assert [lists.lists[int(begin)] for begin in lists.begin[:2]] == [1, 0]
     assert lists.lengths[:2].tolist() == [1, 1]
 
@@ -97,7 +99,7 @@ def test_ghosts_across_a_seam_are_seen_once(dimensions):
     n = position.shape[1]
     owner = np.concatenate([below, np.arange(n), above])
     slab = Slab(0, 0.0, 1.0, len(below), n, len(above), periods, (0.0,) * dimensions, cutoff)
-    lists = list_by_levels(
+    lists, _ = list_by_levels(
         empty(0, 0), tuple(position[:, owner]), length[owner], np.ones(len(owner), np.bool_), SIZES, slab, 1
     )
     for k, row in enumerate(all_pairs(position, length, periods)):
@@ -121,5 +123,44 @@ def test_whether_a_row_stays_empty_rests_on_its_own_level_alone(across):
     looks = np.array([False, False, across, False])
     sought = np.array([0.0, 0.0, 0.0, 1.0])
     places = (np.array([0.3, 0.32, 0.35, 0.9]),)
-    lists = list_by_levels(empty(0, 0), places, length, looks, SIZES, slab, 1, sought)
+    lists, _ = list_by_levels(empty(0, 0), places, length, looks, SIZES, slab, 1, sought)
     assert lists.lengths[:2].tolist() == [0, 0]
+
+
+WITHIN = SIZES._replace(growth=1.0, across=np.ones(1, np.bool_))
+"""Sizes of which each lists its own level, and of others those that reach it."""
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_others_are_those_that_reach_a_particle(periodic):
+    """Of its own level all that either reaches, of others those that reach it; who does not look across none."""
+    rng, n = np.random.default_rng(9), 300
+    position, level = rng.random((2, n)), rng.integers(0, 3, n)
+    length, looks = 0.05 * 0.5**level, rng.random(n) < 0.7
+    periods = (None, 1.0 if periodic else None)
+    slab = Slab(0, 0.0, 1.0, 0, n, 0, periods, (0.0, 0.0), WITHIN.reach(0.05))
+    lists, others = list_by_levels(empty(0, 0), tuple(position), length, looks, WITHIN, slab, 4)
+    apart = position[:, :, None] - position[:, None, :]
+    if periodic:
+        apart[1] -= np.rint(apart[1])
+    reached = (apart**2).sum(axis=0) <= WITHIN.reach(length) ** 2
+    np.fill_diagonal(reached, False)
+    alike = level[:, None] == level
+    for k in range(n):
+        for found, expected in ((lists, reached & alike), (others, reached & ~alike & looks[:, None])):
+            begin, many = int(found.begin[k]), int(found.lengths[k])
+            assert np.array_equal(np.sort(found.lists[begin : begin + many]), np.flatnonzero(expected[k]))
+        begin, many = int(lists.begin[k]), int(lists.lengths[k])
+        assert (lists.lists[begin + many : begin + -(-many // 4) * 4] == k).all()
+    assert others.lengths[:n].sum() > n
+
+
+def test_a_row_stays_empty_that_names_nobody_who_is_sought():
+    """Three in one cell, the last of them sought by the others: only who is near it has a row, and it itself."""
+    length, places = np.full(4, 0.5 / SIZES.reach(1.0)), (np.array([0.05, 0.3, 0.9, 1.3]),)
+    slab = Slab(0, 0.0, 2.0, 0, 4, 0, (None,), (0.0,), 0.5)
+    sought = np.array([0.0, 0.0, 1.0, 0.0])
+    lists, _ = list_by_levels(empty(0, 0), places, length, np.ones(4, np.bool_), SIZES, slab, 1, sought)
+    assert lists.lengths[:4].tolist() == [0, 0, 1, 1]
+    lists, _ = list_by_levels(empty(0, 0), places, length, np.ones(4, np.bool_), SIZES, slab, 1)
+    assert lists.lengths[:4].tolist() == [1, 1, 1, 1]

@@ -92,7 +92,8 @@ def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Co
 
     def by_levels():
         nonlocal room
-        room = levels.list_by_levels(room, rows, length, np.ones(len(length), np.bool_), SIZES, slab, 1)
+        looks = np.ones(len(length), np.bool_)
+        room, _ = levels.list_by_levels(room, rows, length, looks, SIZES, slab, 1)
 
     by_levels()  # compiled, and with room
     entries = int(room.lengths[:n].sum())
