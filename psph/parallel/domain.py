@@ -58,9 +58,10 @@ class Domain:
     """The slab of one rank, its ghosts and its neighbour lists.
 
     ``cutoff`` is the kernel's support and the widest skin together, m, and follows the largest particle where
-    sizes differ; lists name who is within ``reach``, m, which may be less, and where levels of sizes do not see
-    each other rows of ``others`` those of other levels.  ``travels`` says what ghosts need; ``lanes`` is how many entries of a list the pair loop takes at once, None where there is no such loop
-    and nothing to list.
+    sizes differ; lists name who is within ``reach``, m, which may be less, and where levels of sizes do not
+    see each other rows of ``others`` those of other levels.  ``travels`` says what ghosts need; ``lanes`` is
+    how many entries of a list the pair loop takes at once, None where there is no such loop and nothing to
+    list.
     """
 
     def __init__(
