@@ -226,7 +226,7 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
 
     Cells take the part of the ``room`` that is their part of the particles.
     """
-    starts, entries, one = grids.starts, room.lists, np.uint64(1)
+    starts, entries, one, parted = grids.starts, room.lists, np.uint64(1), len(others.begin) > 0
     each = len(entries) / starts[len(starts) - 1]
     begun, capacity = np.int64(each * starts[first]), np.int64(each * starts[last])
     end, level, low, high = np.uint64(begun), 0, corners[0], corners[1]
@@ -243,14 +243,14 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
         if max(many * LANES, held) > len(ranges) * LANES:
             return -np.int64(max(many, held // LANES + 1))
         least, most = of_level(grids, level, ranges, many)
-        # By the ranges of a row alone: whether others in the cell look across is known of owned ones only.
         own = holds_sought(rows.sought.before, ranges, least, most)
-        every = holds_sought(rows.sought.before, ranges, 0, many)
+        every = own if parted else holds_sought(rows.sought.before, ranges, 0, many)
+        found = Gathered(np.int64(0), np.int64(0), np.int64(0), np.int64(0))
         if every:
             box, within2 = box_around(low, high, grids.origin, grids.periods), rows.own * reach * reach
             found = gather(grids, ranges, many, (least, most), members, box, within2, near)
-        else:
-            found = Gathered(np.int64(0), np.int64(0), np.int64(0), np.int64(0))
+            asked = (found.first, found.last) if parted else (np.int64(0), found.end)
+            every = finds(rows.sought, grids.columns[members[0]], near.columns, *asked)
         for m in range(np.uint64(members[0]), np.uint64(members[1])):
             k = np.int64(grids.columns[m])
             row = k - rows.low
@@ -260,11 +260,11 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
                 done = np.int64(m) - starts[first] + 1
                 guess = (np.int64(end) - begun + found.end) * starts[len(starts) - 1] // done
                 return max(guess, len(entries)) + found.end + LANES + rows.multiple
-            begin, named = end, every if rows.across[m] else own
+            begin, named = end, every and (own or rows.across[m])
             itself, within2 = np.uint64(found.itself + np.int64(m) - members[0]), rows.own * grids.within2[m]
             told = itself, within2, near, grids.periods
             if named:
-                all_levels = rows.across[m] and row >= len(others.begin)
+                all_levels = rows.across[m] and not parted
                 part = (np.int64(0), found.end) if all_levels else (found.first, found.last)
                 end = append_row(entries, end, *told, *part)
                 named = finds(rows.sought, k, entries, begin, end)
@@ -273,7 +273,7 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
             while (end - begin) % np.uint64(rows.multiple) != np.uint64(0):
                 entries[end] = k
                 end += one
-            if row < len(others.begin):
+            if parted:
                 begin = end
                 if named and rows.across[m]:
                     end = append_row(entries, end, *told, np.int64(0), found.first)

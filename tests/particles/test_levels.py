@@ -131,28 +131,35 @@ WITHIN = SIZES._replace(growth=1.0, across=np.ones(1, np.bool_))
 """Sizes of which each lists its own level, and of others those that reach it."""
 
 
+@pytest.mark.parametrize("seeking", [False, True])
 @pytest.mark.parametrize("periodic", [False, True])
-def test_others_are_those_that_reach_a_particle(periodic):
-    """Of its own level all that either reaches, of others those that reach it; who does not look across none."""
+def test_others_are_those_that_reach_a_particle(periodic, seeking):
+    """Of its own level all that either reaches, of others those that reach it; who does not look across none,
+    nor who names nobody of its own level who is sought, where some are, and is none of them."""
     rng, n = np.random.default_rng(9), 300
     position, level = rng.random((2, n)), rng.integers(0, 3, n)
     length, looks = 0.05 * 0.5**level, rng.random(n) < 0.7
     periods = (None, 1.0 if periodic else None)
     slab = Slab(0, 0.0, 1.0, 0, n, 0, periods, (0.0, 0.0), WITHIN.reach(0.05))
-    lists, others = list_by_levels(empty(0, 0), tuple(position), length, looks, WITHIN, slab, 4)
+    sought = (rng.random(n) < 0.05).astype(float) if seeking else None
+    lists, others = list_by_levels(empty(0, 0), tuple(position), length, looks, WITHIN, slab, 4, sought)
     apart = position[:, :, None] - position[:, None, :]
     if periodic:
         apart[1] -= np.rint(apart[1])
     reached = (apart**2).sum(axis=0) <= WITHIN.reach(length) ** 2
     np.fill_diagonal(reached, False)
     alike = level[:, None] == level
+    if seeking:
+        named = (sought > 0.0) | (reached & alike & (sought > 0.0)).any(axis=1)
+        assert 20 < named.sum() < n - 20
+        reached &= named[:, None]
     for k in range(n):
         for found, expected in ((lists, reached & alike), (others, reached & ~alike & looks[:, None])):
             begin, many = int(found.begin[k]), int(found.lengths[k])
             assert np.array_equal(np.sort(found.lists[begin : begin + many]), np.flatnonzero(expected[k]))
         begin, many = int(lists.begin[k]), int(lists.lengths[k])
         assert (lists.lists[begin + many : begin + -(-many // 4) * 4] == k).all()
-    assert others.lengths[:n].sum() > n
+    assert others.lengths[:n].sum() > 40
 
 
 def test_a_row_stays_empty_that_names_nobody_who_is_sought():
