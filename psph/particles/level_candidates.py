@@ -17,13 +17,16 @@ PARTS = 3
 class Candidates(NamedTuple):
     """Those that may be near a cell's particles, in the order of the grids.
 
-    ``position`` are the components of their places, m, ``within2`` the squares of how far they reach, m², and
-    ``columns`` theirs; registers are filled up with places that are NaN, near nobody.
+    ``position`` are the components of their places from the middle of the cell, m, ``within2`` the squares of
+    how far they reach, m², and ``columns`` theirs; registers are filled up with places that are NaN, near
+    nobody.  ``rounded`` and ``rounded2`` are the same in single precision, and less what that may add.
     """
 
     position: tuple
     within2: np.ndarray
     columns: np.ndarray
+    rounded: tuple
+    rounded2: np.ndarray
 
 
 class Gathered(NamedTuple):
@@ -39,25 +42,31 @@ class Gathered(NamedTuple):
 def room_for(groups: int, dimensions: int) -> Candidates:
     """Room for so many ``groups`` of candidates."""
     count = (groups + 2 * PARTS) * LANES
-    position = tuple(np.zeros(count) for _ in range(dimensions))
-    return Candidates(position, np.zeros(count), np.zeros(count, np.uint32))
+    position, rounded = (
+        tuple(np.zeros(count, precision) for _ in range(dimensions)) for precision in (np.float64, np.float32)
+    )
+    columns = np.zeros(count, np.uint32)
+    return Candidates(position, np.zeros(count), columns, rounded, np.zeros(count, np.float32))
 
 
-def box_around(low, high, origin, periods):
-    """Middle and half the width (dim,), m, of a box from ``low`` to ``high`` (3,), m from the origin."""
-    first = AXES - len(periods)
-    middle = tuple(origin[a] + 0.5 * (low[a] + high[a]) for a in range(first, AXES))
-    return middle, tuple(0.5 * (high[a] - low[a]) for a in range(first, AXES))
+def box_around(low, high, middle, origin, periods):
+    """The ``middle`` of a cell (dim,), m; middle and half the width (dim,), m, of a box from ``low`` to
+    ``high`` seen from there; all three (3,), m from the ``origin``."""
+    axes = range(AXES - len(periods), AXES)
+    place = tuple(0.5 * (low[a] + high[a]) - middle[a] for a in axes)
+    return tuple(origin[a] + middle[a] for a in axes), place, tuple(0.5 * (high[a] - low[a]) for a in axes)
 
 
 @overload(box_around)
-def _typed_box_around(low, high, origin, periods):
+def _typed_box_around(low, high, middle, origin, periods):
     axes = range(AXES - len(periods), AXES)
-    middle = tuple_of(f"origin[{a}] + 0.5 * (low[{a}] + high[{a}])" for a in axes)
-    return unrolled(
-        "low, high, origin, periods",
-        f"return {middle}, {tuple_of(f'0.5 * (high[{a}] - low[{a}])' for a in axes)}",
+    parts = (
+        "origin[{0}] + middle[{0}]",
+        "0.5 * (low[{0}] + high[{0}]) - middle[{0}]",
+        "0.5 * (high[{0}] - low[{0}])",
     )
+    found = ", ".join(tuple_of(part.format(a) for a in axes) for part in parts)
+    return unrolled("low, high, middle, origin, periods", f"return {found}")
 
 
 def outside(x, half):
@@ -71,55 +80,73 @@ def _typed_outside(x, half):
     return unrolled("x, half", f"return {tuple_of(parts)}")
 
 
-def beside_bits(box, within2, grids, m):
-    """Bit t says whether particle ``m + t`` of the grids is as near the ``box`` as it reaches, or as near as
-    the square root of ``within2``."""
-    away = outside(nearest_image(subtract(at(grids.position, m), box[0]), grids.periods), box[1])
+def seen_from(grids, middle, m):
+    """Where particle ``m`` of the grids is from the ``middle`` of a cell (dim,), m, its nearest image; lanes
+    in compiled code."""
+    return nearest_image(subtract(at(grids.position, m), middle), grids.periods)
+
+
+@overload(seen_from)
+def _typed_seen_from(grids, middle, m):
+    return lambda grids, middle, m: nearest_image(
+        subtract(consecutive_each(grids.position, m), middle), grids.periods
+    )
+
+
+def beside_bits(x, box, within2, grids, m):
+    """Bit t says whether particle ``m + t`` of the grids, at ``x``, is as near the ``box`` as it reaches, or
+    as near as the square root of ``within2``."""
+    away = outside(subtract(x, box[1]), box[2])
     return int(dot(away, away) <= WIDER * WIDER * max(within2, grids.within2[m]))
 
 
 @overload(beside_bits)
-def _typed_beside_bits(box, within2, grids, m):
-    def compare(box, within2, grids, m):
-        x = nearest_image(subtract(consecutive_each(grids.position, m), box[0]), grids.periods)
-        away = outside(x, box[1])
+def _typed_beside_bits(x, box, within2, grids, m):
+    def compare(x, box, within2, grids, m):
+        away = outside(subtract(x, box[1]), box[2])
         return bits(dot(away, away) <= max(consecutive(grids.within2, m), within2) * (WIDER * WIDER))
 
     return compare
 
 
-def near_bits(x_i, within2_i, near, periods, n):
+def near_bits(x_i, within2_i, near, n):
     """Bit t says whether candidate ``n + t`` lies within its reach of ``x_i``, or within that of this one,
-    whose square is ``within2_i``."""
-    if np.isnan(near.position[0][n]):  # of which Python has no nearest image
-        return 0
-    x_ij = nearest_image(subtract(x_i, at(near.position, n)), periods)
-    return int(dot(x_ij, x_ij) <= max(within2_i, near.within2[n]))
+    whose square is ``within2_i``; in single precision."""
+    x_ij = subtract(x_i, at(near.rounded, n))
+    return int(dot(x_ij, x_ij) <= max(within2_i, near.rounded2[n]))
 
 
 @overload(near_bits)
-def _typed_near_bits(x_i, within2_i, near, periods, n):
-    def compare(x_i, within2_i, near, periods, n):
-        x_ij = nearest_image(subtract(x_i, consecutive_each(near.position, n)), periods)
-        return bits(dot(x_ij, x_ij) <= max(consecutive(near.within2, n), within2_i))
+def _typed_near_bits(x_i, within2_i, near, n):
+    def compare(x_i, within2_i, near, n):
+        x_ij = subtract(x_i, consecutive_each(near.rounded, n))
+        return bits(dot(x_ij, x_ij) <= max(consecutive(near.rounded2, n), within2_i))
 
     return compare
 
 
-def keep_each(into, end, arrays, first, chosen):
-    """Write of each array the entries ``first + t`` for each bit t that is ``chosen`` from ``end`` on."""
+def keep_each(into, end, x, chosen):
+    """Write each component of those places ``x`` of which a bit is ``chosen`` from ``end`` on."""
     if chosen:
-        for kept, array in zip(into, arrays):
-            kept[end] = array[first]
+        for kept, component in zip(into, x):
+            kept[end] = component
 
 
 @overload(keep_each)
-def _typed_keep_each(into, end, arrays, first, chosen):
-    lines = (
-        f"keep_lanes(into[{d}], end, consecutive(arrays[{d}], first), chosen)" for d in range(len(arrays))
-    )
-    names = {"keep_lanes": keep_lanes, "consecutive": consecutive}
-    return unrolled("into, end, arrays, first, chosen", *lines, **names)
+def _typed_keep_each(into, end, x, chosen):
+    lines = (f"keep_lanes(into[{d}], end, x[{d}], chosen)" for d in range(len(into)))
+    return unrolled("into, end, x, chosen", *lines, keep_lanes=keep_lanes)
+
+
+@inside
+def round_all(near, end, narrower):
+    """Write the first candidates, before ``end``, in single precision, the squares of reaches times
+    ``narrower``."""
+    for d in range(len(near.position)):
+        for n in range(end):
+            near.rounded[d][n] = near.position[d][n]
+    for n in range(end):
+        near.rounded2[n] = near.within2[n] * narrower
 
 
 @register_jitable
@@ -132,9 +159,10 @@ def fill_up(near, end):
 
 
 @inside
-def gather(grids, ranges, many, own, cell, box, within2, near):
+def gather(grids, ranges, many, own, cell, box, within2, narrower, near):
     """Write to ``near`` those in the first ``many`` of the ``ranges`` that are as near the ``box`` around the
-    particles ``cell[0]`` to ``cell[1]`` as they reach themselves, or as the square root of ``within2``, m².
+    particles ``cell[0]`` to ``cell[1]`` as they reach themselves, or as the square root of ``within2``, m²;
+    in single precision squares of reaches are ``narrower`` by this factor.
 
     Ranges from number ``own[0]`` to before ``own[1]`` are of the cell's own level.
     """
@@ -153,24 +181,26 @@ def gather(grids, ranges, many, own, cell, box, within2, near):
                 itself = end
             for m in range(np.uint64(begin), np.uint64(until), width_of(grids.within2)):
                 others = (one << min(np.uint64(LANES), np.uint64(until) - m)) - one
-                chosen = beside_bits(box, within2, grids, m) & others
-                place = np.uint64(end)
-                keep_each(near.position, place, grids.position, m, chosen)
+                x, place = seen_from(grids, box[0], m), np.uint64(end)
+                chosen = beside_bits(x, box, within2, grids, m) & others
+                keep_each(near.position, place, x, chosen)
                 keep_entries(near.columns, place, grids.columns, m, chosen, grids.within2)
                 end = np.int64(keep_lanes(near.within2, place, consecutive(grids.within2, m), chosen))
             begin = until
-    return Gathered(fill_up(near, end), first, last, itself)
+    end = fill_up(near, end)
+    round_all(near, end, narrower)
+    return Gathered(end, first, last, itself)
 
 
 @inside
-def append_row(entries, end, itself, within2_i, near, periods, first, last):
+def append_row(entries, end, itself, within2_i, near, first, last):
     """Write the columns of the neighbours of the candidate ``itself`` behind ``end``, of those from ``first``
-    to ``last``; returns the new end."""
-    x_i, x = at(near.position, itself), near.position[0][itself]
-    near.position[0][itself] = np.nan  # not its own neighbour
-    for n in range(np.uint64(first), np.uint64(last), width_of(near.within2)):
-        chosen = near_bits(x_i, within2_i, near, periods, n)
-        keep_entries(entries, end, near.columns, n, chosen, near.within2)
+    to ``last``; returns the new end.  ``within2_i`` is the square of how far it looks itself."""
+    x_i, x = at(near.rounded, itself), near.rounded[0][itself]
+    near.rounded[0][itself] = np.nan  # not its own neighbour
+    for n in range(np.uint64(first), np.uint64(last), width_of(near.rounded2)):
+        chosen = near_bits(x_i, within2_i, near, n)
+        keep_entries(entries, end, near.columns, n, chosen, near.rounded2)
         end += HOW_MANY[chosen]
-    near.position[0][itself] = x
+    near.rounded[0][itself] = x
     return end

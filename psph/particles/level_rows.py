@@ -5,7 +5,26 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.engine.jit import inside
-from psph.particles.neighbours import Sought
+
+
+class Sought(NamedTuple):
+    """Those whom each row must name or stay empty: whether a column is ``one`` of them (columns,), and how
+    many of the grids are before each (n + 1,), ``before``; both empty where all rows are filled."""
+
+    one: np.ndarray
+    before: np.ndarray
+
+    @classmethod
+    def none(cls) -> "Sought":
+        """All rows are filled."""
+        return cls(np.zeros(0, bool), np.zeros(0, np.int64))
+
+    @classmethod
+    def among(cls, one: np.ndarray, columns: np.ndarray) -> "Sought":
+        """Each column that is ``one`` (columns,), of grids with some ``columns`` (n,)."""
+        before = np.zeros(len(columns) + 1, np.int64)
+        np.cumsum(one[columns], out=before[1:])
+        return cls(one, before)
 
 
 class OwnedRows(NamedTuple):
@@ -47,4 +66,16 @@ def looks(rows, first, last):
     found = False
     for m in range(first, last):
         found = found or rows.across[m]
+    return found
+
+
+@inside
+def finds(sought, k, columns, first, end):
+    """Whether column ``k`` or one of the ``columns`` from place ``first`` to before ``end`` is ``sought``;
+    True where nobody is told."""
+    found = len(sought.one) == 0 or sought.one[k]
+    n = np.uint64(first)
+    while not found and n < np.uint64(end):
+        found = sought.one[np.uint64(columns[n])]
+        n += np.uint64(1)
     return found

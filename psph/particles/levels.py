@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import compiled, uncounted
+from psph.engine.jit import compiled, inside, uncounted
 from psph.engine.threads import in_rooms, threads
 from psph.particles.lanes import LANES
 from psph.particles.level_candidates import Gathered, append_row, box_around, gather, room_for
 from psph.particles.level_ranges import AXES, BITS, FARTHEST, WIDER, candidates, extent, of_level
-from psph.particles.level_rows import OwnedRows, holds_sought, looks, owns
-from psph.particles.neighbours import Neighbours, Sought, empty, entries_for, finds
-from psph.particles.sizes import Sizes
+from psph.particles.level_rows import OwnedRows, Sought, finds, holds_sought, looks, owns
+from psph.particles.neighbours import Neighbours, empty, entries_for
+from psph.particles.sizes import ROUNDED, Sizes
 from psph.particles.store import SPARE
 
 CELLS_A_REACH = {1: 1.0, 2: 1.0, 3: 1.25}
@@ -99,8 +99,7 @@ def list_by_levels(
     grids = grids_of([x[:total] for x in position], sizes.reach(listed[:total]), slab)
     columns, seek = grids.columns[:total], Sought.none()
     if sought is not None:
-        wanted = sought[:total] > 0.0
-        seek = Sought.among(wanted[columns])._replace(one=wanted)
+        seek = Sought.among(sought[:total] > 0.0, columns)
     if len(room.begin) < slab.owned:
         room = empty(slab.owned + slab.owned // SPARE, max(len(room.lists), SOME * total))
     # How many entries there are is known once they are written: too little room, and all is done again.
@@ -214,14 +213,33 @@ def _padded(values: np.ndarray) -> np.ndarray:
 
 def work_room(groups: int, dimensions: int) -> tuple:
     """What a thread works in: room for so many ``groups`` of candidates of a cell."""
-    return np.zeros((groups, 2), np.int64), np.zeros((2, AXES)), room_for(groups, dimensions)
+    return np.zeros((groups, 2), np.int64), np.zeros((3, AXES)), room_for(groups, dimensions)
+
+
+@inside
+def middle_of(grids, level, cell, low, high, reach, middle):
+    """Write the ``middle`` of a cell (3,), m from the origin: that of the box from ``low`` to ``high`` around
+    its particles where it is one of the outermost, which have no width.
+
+    By which factor squares of reaches are narrower in single precision, of particles that reach so far, m:
+    places are rounded by 6e-8 of how far they are from the middle, less than two reaches.
+    """
+    factor = 1.0 - ROUNDED
+    for a in range(AXES):
+        number, per = (grids.keys[cell] >> BITS * (AXES - 1 - a) & ALL) - FARTHEST, grids.inverse[level, a]
+        middle[a] = 0.5 * (low[a] + high[a])
+        if per > 0.0 and abs(number) < FARTHEST:
+            middle[a] = (number + 0.5) / per  # the same on every rank, whoever is there
+        elif per > 0.0:
+            factor = max(factor, 1.0 + ROUNDED * ((high[a] - low[a]) / reach) ** 2)
+    return factor
 
 
 @uncounted
 def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
     """Fill the rows of those particles in the cells ``first`` to ``last`` that a rank owns; returns 0, or
     about how many entries are needed for all, or, with a minus, how many groups of candidates; ``ranges``
-    (groups, 2), ``corners`` (2, 3) and ``near`` are room too.  Where there are rows of ``others`` than those
+    (groups, 2), ``corners`` (3, 3) and ``near`` are room too.  Where there are rows of ``others`` than those
     of a particle's own level each stands behind that of these, and is empty where that stays empty.
 
     Cells take the part of the ``room`` that is their part of the particles.
@@ -247,8 +265,10 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
         every = own if parted else holds_sought(rows.sought.before, ranges, 0, many)
         found = Gathered(np.int64(0), np.int64(0), np.int64(0), np.int64(0))
         if every:
-            box, within2 = box_around(low, high, grids.origin, grids.periods), rows.own * reach * reach
-            found = gather(grids, ranges, many, (least, most), members, box, within2, near)
+            narrower = middle_of(grids, level, cell, low, high, reach, corners[2])
+            box = box_around(low, high, corners[2], grids.origin, grids.periods)
+            told = box, rows.own * reach * reach, narrower, near
+            found = gather(grids, ranges, many, (least, most), members, *told)
             asked = (found.first, found.last) if parted else (np.int64(0), found.end)
             every = finds(rows.sought, grids.columns[members[0]], near.columns, *asked)
         for m in range(np.uint64(members[0]), np.uint64(members[1])):
@@ -261,12 +281,12 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
                 guess = (np.int64(end) - begun + found.end) * starts[len(starts) - 1] // done
                 return max(guess, len(entries)) + found.end + LANES + rows.multiple
             begin, named = end, every and (own or rows.across[m])
-            itself, within2 = np.uint64(found.itself + np.int64(m) - members[0]), rows.own * grids.within2[m]
-            told = itself, within2, near, grids.periods
+            itself = np.uint64(found.itself + np.int64(m) - members[0])
             if named:
+                own2 = np.float32(rows.own) * near.rounded2[itself]
                 all_levels = rows.across[m] and not parted
                 part = (np.int64(0), found.end) if all_levels else (found.first, found.last)
-                end = append_row(entries, end, *told, *part)
+                end = append_row(entries, end, itself, own2, near, *part)
                 named = finds(rows.sought, k, entries, begin, end)
                 end = end if named else begin
             room.begin[row], room.lengths[row] = begin, end - begin
@@ -276,7 +296,7 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
             if parted:
                 begin = end
                 if named and rows.across[m]:
-                    end = append_row(entries, end, *told, np.int64(0), found.first)
-                    end = append_row(entries, end, *told, found.last, found.end)
+                    end = append_row(entries, end, itself, own2, near, np.int64(0), found.first)
+                    end = append_row(entries, end, itself, own2, near, found.last, found.end)
                 others.begin[row], others.lengths[row] = begin, end - begin
     return np.int64(0)

@@ -41,27 +41,6 @@ class Near(NamedTuple):
     cutoff2: float
 
 
-class Sought(NamedTuple):
-    """Those whom each row must name or stay empty: whether a column from ``first`` on is ``one`` of them
-    (n,), and how many of those are ``before`` each (n + 1,); both empty where all rows are filled."""
-
-    first: np.uint64
-    one: np.ndarray
-    before: np.ndarray
-
-    @classmethod
-    def none(cls) -> "Sought":
-        """All rows are filled."""
-        return cls(np.uint64(0), np.zeros(0, bool), np.zeros(0, np.int64))
-
-    @classmethod
-    def among(cls, one: np.ndarray, first: int = 0) -> "Sought":
-        """Those of the columns from the ``first`` on of which each is ``one`` (n,)."""
-        before = np.zeros(len(one) + 1, np.int64)
-        np.cumsum(one, out=before[1:])
-        return cls(np.uint64(first), one, before)
-
-
 def empty(owned: int, entries: int) -> Neighbours:
     """Room for the rows of ``owned`` particles with ``entries`` neighbours in all."""
     return Neighbours(np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), entries_for(entries))
@@ -89,13 +68,13 @@ def build(
 
     ``starts`` are the first columns of the cells of ``planes`` owned planes and one ghost plane
     on either side.  ``room`` is used again where it is large enough.  Rows are filled up to a
-    multiple of ``lanes``.  Where ``sought`` is given (columns,) a row stays empty that names no column above
-    0, but for those of such columns.  ``fill`` is :func:`fill_lists`, or one that is settled.
+    multiple of ``lanes``.  Where ``sought`` is given (columns,) a row stays empty that has no column above 0
+    in the cells around.  ``fill`` is :func:`fill_lists`, or one that is settled.
     """
     owned, first = store.owned, int(starts[0])
-    seek = Sought.none()
+    before = np.zeros(0 if sought is None else store.total - first + 1, np.int64)
     if sought is not None:
-        seek = Sought.among(sought[first : store.total] > 0.0, first)
+        np.cumsum(sought[first : store.total] > 0.0, out=before[1:])
     position, cutoff = in_single_precision(store, grid, first, cutoff)
     # The guess of entries need not be right; the same lists come of any.
     if len(room.begin) < owned:
@@ -103,7 +82,7 @@ def build(
     near = Near(position, periods, cutoff * cutoff)
     # How many entries there are is known once they are written: too little room, and all is done again.
     while True:
-        parts = in_threads(fill, 1, planes + 1, near, grid, starts, store.low, owned, lanes, seek, room)
+        parts = in_threads(fill, 1, planes + 1, near, grid, starts, store.low, owned, lanes, before, room)
         needed = max(parts)
         if needed == 0:
             return room
@@ -134,8 +113,9 @@ def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple
 
     Planes take the part of the lists that is their part of the ``owned`` particles.
     The candidates of a cell are a few ranges of columns, eight to a group; all eight are compared at
-    once, and a table packs those that are near.  A row stays empty that names none of those who are
-    ``sought`` and is of none."""
+    once, and a table packs those that are near.  ``sought`` counts, before each column from the first
+    on, those of which a row must have one in its cells around; it is empty where all rows are filled.
+    """
     begin, lengths, lists = room.begin, room.lengths, room.lists
     rows, columns = grid.counts[1], grid.counts[2]
     from_k = np.empty(18, np.uint64)
@@ -160,7 +140,7 @@ def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple
                 ranges, candidates = candidate_ranges(
                     plane, row, column, rows, columns, grid.periodic, grid.reach, starts, from_k, to_k
                 )
-                if len(sought.one) and not any_within(ranges, from_k, to_k, sought.before, starts[0]):
+                if len(sought) and not any_within(ranges, from_k, to_k, sought, starts[0]):
                     for i in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
                         begin[i - np.uint64(low)], lengths[i - np.uint64(low)] = end, 0
                     continue
@@ -183,26 +163,12 @@ def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple
                         bits = near_bits(near.position, column_g, x_i, near.periods, near.cutoff2) & valid[g]
                         end = append_near(lists, end, column_g, bits)
                     valid[own_group] ^= own_bit
-                    if not finds(sought, i, lists, first, end):
-                        end = first
                     begin[i - np.uint64(low)] = first
                     lengths[i - np.uint64(low)] = end - first
                     while (end - first) % np.uint64(multiple) != np.uint64(0):
                         lists[end] = i
                         end += np.uint64(1)
     return np.int64(0)
-
-
-@compiled
-def finds(sought, k, lists, first, end):
-    """Whether column ``k`` or an entry of ``lists`` from ``first`` to before ``end`` is ``sought``; True
-    where nobody is told."""
-    found = len(sought.one) == 0 or sought.one[np.uint64(k) - sought.first]
-    n = first
-    while not found and n < end:
-        found = sought.one[np.uint64(lists[n]) - sought.first]
-        n += np.uint64(1)
-    return found
 
 
 @compiled

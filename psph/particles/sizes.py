@@ -14,6 +14,10 @@ their skin."""
 LEAST_GROWTH = 1.02
 """Lists are made anew where they reach no farther than for lengths that have grown by this."""
 
+ROUNDED = 4e-6
+"""Part of a reach by which lists may fall short of it: they are made in single precision, and name nobody who
+is farther, whom a ghost would have to stand for."""
+
 CUTOFFS_A_PERIOD = 3.0
 """A period holds so many cutoffs at the least: the nearest image is the only one in reach."""
 
@@ -69,7 +73,7 @@ class Sizes(NamedTuple):
     def growth_left(self, strayed, most: float):
         """By how much h may have grown since lists were made, of particles that have ``strayed`` by this part
         of their support then, and others by this at the ``most``."""
-        return self.growth + self.skin - strayed - most
+        return (1.0 - ROUNDED) * (self.growth + self.skin) - strayed - most
 
     def cutoff(self, longest: float, periods) -> float:
         """How far lists reach, m, by the ``longest`` smoothing length of all; raises TooLarge where that does

@@ -171,3 +171,20 @@ def test_a_row_stays_empty_that_names_nobody_who_is_sought():
     assert lists.lengths[:4].tolist() == [0, 0, 1, 1]
     lists, _ = list_by_levels(empty(0, 0), places, length, np.ones(4, np.bool_), SIZES, slab, 1)
     assert lists.lengths[:4].tolist() == [1, 1, 1, 1]
+
+
+@pytest.mark.parametrize("away", [0.0, 2.0**17])
+@pytest.mark.parametrize(("part", "named"), [(1.0 - 1e-5, 1), (1.0 + 1e-8, 0)])
+def test_lists_reach_no_farther_than_they_say_and_hardly_less(part, named, away):
+    """Pairs of one size in many directions, each with another a fifth of a reach nearer to the other, near the
+    corner of the domain and far from it: in single precision."""
+    rng, many = np.random.default_rng(4), 40
+    way = rng.normal(size=(3, many))
+    way /= np.linalg.norm(way, axis=0)
+    first = np.stack([np.arange(many) * 5.0 + 2.0, *rng.uniform(1.0, 2.0, (2, many))])
+    places = [first + along * way for along in (0.0, 0.2, part - 0.2, part)]
+    position = np.stack(places, axis=2).reshape(3, -1) + away
+    n, length = 4 * many, np.full(4 * many, 1.0) / SIZES.reach(1.0)
+    slab = Slab(0, away, away + 5.0 * many, 0, n, 0, (None,) * 3, (away,) * 3, 1.0)
+    lists, _ = list_by_levels(empty(0, 0), tuple(position), length, np.ones(n, np.bool_), SIZES, slab, 1)
+    assert lists.lengths[:n].tolist() == [2 + named, 3, 3, 2 + named] * many

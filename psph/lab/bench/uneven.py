@@ -16,6 +16,7 @@ from psph.engine.jit import uncounted
 from psph.particles import levels
 from psph.particles.level_candidates import box_around, gather
 from psph.particles.level_ranges import candidates, extent, of_level
+from psph.particles.levels import middle_of
 from psph.particles.neighbours import empty
 from psph.particles.sizes import GROWTH, Sizes
 
@@ -75,9 +76,10 @@ def count_candidates(grids, ranges, corners, near):
         members = grids.starts[cell], grids.starts[cell + 1]
         reach = extent(grids, *members, low, high)
         many, _ = candidates(grids, low, high, reach, (0, len(grids.reach)), ranges)
-        box = box_around(low, high, grids.origin, grids.periods)
+        narrower = middle_of(grids, level, cell, low, high, reach, corners[2])
+        box = box_around(low, high, corners[2], grids.origin, grids.periods)
         own = of_level(grids, level, ranges, many)
-        found = gather(grids, ranges, many, own, members, box, reach * reach, near)
+        found = gather(grids, ranges, many, own, members, box, reach * reach, narrower, near)
         count += (members[1] - members[0]) * found.end
     return count
 
