@@ -10,15 +10,19 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 from scipy.spatial import cKDTree
 
 from psph.engine.jit import uncounted
-from psph.particles import levels
+from psph.fields import LISTED_POSITION, POSITION, view_of
+from psph.parallel.domain import Domain, Extent, Travels
+from psph.particles import levels, neighbours
 from psph.particles.level_candidates import box_around, gather
 from psph.particles.level_ranges import candidates, extent, of_level
 from psph.particles.levels import middle_of
 from psph.particles.neighbours import empty
 from psph.particles.sizes import GROWTH, Sizes
+from psph.particles.store import Store
 
 SIZES = Sizes(2.0, 0.15, "smoothing_length", "listed_length")
 """As ideal gases have them."""
@@ -28,6 +32,9 @@ SMOOTHING = 1.4
 
 SIDE = {2: 96, 3: 24}
 """Particles along an edge of a nest."""
+
+ALIKE = {2: 192, 3: 40}
+"""Particles along the edge of one of one size: about as many as in a nest at 10 : 1."""
 
 RATIOS = (1, 2, 10, 100)
 """The largest over the smallest size."""
@@ -106,6 +113,21 @@ def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Co
         quickest(repeats, by_levels) / entries,
         tree / int((cKDTree(x.T).query_ball_point(x.T, reach, return_length=True) - 1).sum()),
     )
+
+
+def alike(dimensions: int, side: int, repeats: int = REPEATS) -> float:
+    """Nanoseconds an entry of the lists of particles of one size, as fluids make them, that reach as far."""
+    x, spacing = nests(dimensions, 1.0, side)
+    reach, n = float(SIZES.reach(SMOOTHING * spacing[0])), x.shape[1]
+    store = Store(dimensions, [POSITION, LISTED_POSITION], {}, view_of(()))
+    store.append(np.arange(n), np.zeros(n, np.uint8), np.concatenate([x, x]))
+    ends = (-0.5,) * dimensions, (0.5,) * dimensions, (None,) * dimensions
+    domain = Domain(MPI.COMM_SELF, store, Extent(0, *ends), reach, Travels((), ("position",)), 1)
+    domain.rebuild()
+    found = domain.grid, domain.starts, domain.planes, reach, domain.periods
+    told = domain.lists, store, *found, 1, None, neighbours.fill_lists
+    entries = int(domain.lists.lengths[:n].sum())
+    return quickest(repeats, lambda: neighbours.build(*told)) / entries
 
 
 class Ghosts(NamedTuple):
@@ -201,6 +223,8 @@ def table(repeats: int = REPEATS) -> str:
             ("k-d tree of scipy, ns an entry", [f"{one.tree:.0f}" for one in costs]),
         ):
             lines.append(f"| {dimensions}D: {name} | {' | '.join(of)} |")
+        one_size = [f"{alike(dimensions, ALIKE[dimensions], repeats):.1f}", *["–"] * (len(RATIOS) - 1)]
+        lines.append(f"| {dimensions}D: one size, as fluids list it, ns an entry | {' | '.join(one_size)} |")
     return "\n".join(lines)
 
 

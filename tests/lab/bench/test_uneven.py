@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from psph.lab.bench.uneven import SIZES, SMOOTHING, cost, ghosts, layers, nests
+from psph.lab.bench.uneven import SIZES, SMOOTHING, alike, cost, ghosts, layers, nests
 
 
 @pytest.mark.parametrize(("dimensions", "side"), [(2, 24), (3, 12)])
@@ -12,6 +12,12 @@ from psph.lab.bench.uneven import SIZES, SMOOTHING, cost, ghosts, layers, nests
 def test_candidates_do_not_grow_with_the_ratio_of_sizes(dimensions, side, ratio):
     """Cells as wide as the largest reaches would hold 60 to 130 candidates a neighbour at 10 : 1."""
     assert 1.0 < cost(dimensions, ratio, side, repeats=1).candidates < 6.0
+
+
+@pytest.mark.parametrize(("dimensions", "side"), [(2, 24), (3, 12)])
+def test_lists_of_one_size_are_timed(dimensions, side):
+    """A clock has no right answer: some nanoseconds an entry, not none and no microseconds."""
+    assert 0.1 < alike(dimensions, side, repeats=1) < 1000.0
 
 
 def test_nests_are_as_fine_as_they_say():
