@@ -15,6 +15,9 @@ the outermost."""
 BITS = 21
 """Of a cell's key for each axis."""
 
+ALL = 2**BITS - 1
+"""The bits of an axis."""
+
 WIDER = 1.0 + 1e-9
 """Rounding may put a particle into the next cell."""
 

@@ -10,11 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import compiled, inside, uncounted
+from psph.engine.jit import inside, uncounted
 from psph.engine.threads import in_rooms, threads
+from psph.particles.cell_order import by_key
 from psph.particles.lanes import LANES
 from psph.particles.level_candidates import Gathered, append_row, box_around, gather, room_for
-from psph.particles.level_ranges import AXES, BITS, FARTHEST, WIDER, candidates, extent, of_level
+from psph.particles.level_ranges import ALL, AXES, BITS, FARTHEST, WIDER, candidates, extent, of_level
 from psph.particles.level_rows import OwnedRows, Sought, finds, holds_sought, looks, owns
 from psph.particles.neighbours import Neighbours, empty, entries_for
 from psph.particles.sizes import ROUNDED, Sizes
@@ -26,9 +27,6 @@ and 1.5 the quickest."""
 
 SURPLUS = 8
 """Part of the entries for which there is room besides where there was too little: lists of a gas grow on."""
-
-ALL = 2**BITS - 1
-"""The bits of an axis."""
 
 GROUPS = 512
 """Groups of candidates of a cell for which there is room at first; the guess need not be right."""
@@ -176,25 +174,6 @@ def _boxes(keys: np.ndarray, base: np.ndarray) -> np.ndarray:
         cells = (keys >> BITS * (AXES - 1 - a) & ALL) - FARTHEST
         found[:, 0, a], found[:, 1, a] = np.minimum.reduceat(cells, base), np.maximum.reduceat(cells, base)
     return found
-
-
-def by_key(key: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Columns, which rise, by their ``key``, and those of one key in their order."""
-    # What keeps the order of equals takes five times as long; there are few in a cell.
-    found = np.argsort(key[columns])
-    order_equals(key[columns[found]], found)
-    return columns[found]
-
-
-@compiled
-def order_equals(key, found):
-    """Let the entries of ``found`` rise where their ``key``, in order, is the same."""
-    for k in range(1, len(key)):
-        own, m = found[k], k
-        while m > 0 and key[m - 1] == key[k] and found[m - 1] > own:
-            found[m] = found[m - 1]
-            m -= 1
-        found[m] = own
 
 
 def _beyond(x: np.ndarray, period: float, slab: Slab) -> np.ndarray:

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from psph.particles import levels
+from psph.particles.cell_order import by_key
+from psph.particles.level_ranges import BITS
 from psph.particles.levels import Slab, list_by_levels
 from psph.particles.neighbours import empty
 from psph.particles.sizes import GROWTH, Sizes, TooLarge
@@ -69,11 +71,14 @@ def test_too_little_room_is_made_larger(monkeypatch):
     assert rows() == expected
 
 
-def test_those_of_a_cell_come_in_the_order_of_their_columns():
-    """Sixty at nine places: their keys are the same, and what sorts keys does not keep the order of equals."""
-    key = np.random.default_rng(3).integers(0, 9, 60)
+@pytest.mark.parametrize("apart", [1, 2**40])
+def test_those_of_a_cell_come_in_the_order_of_their_columns(apart):
+    """Sixty in nine cells, side by side, whose particles are counted, or far apart, whose keys are sorted by what
+    does not keep the order of equals."""
+    rng = np.random.default_rng(3)
+    key = sum(rng.integers(0, 3, 60) << shift for shift in (0, BITS)) * apart
     columns = np.arange(7, 67)
-    assert levels.by_key(np.concatenate([np.zeros(7, int), key]), columns).tolist() == (
+    assert by_key(np.concatenate([np.zeros(7, int), key]), columns).tolist() == (
         columns[np.argsort(key, kind="stable")].tolist()
     )
 
