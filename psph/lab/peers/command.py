@@ -16,7 +16,7 @@ from psph.lab.errors import PeersError, RunBlewUp
 from psph.lab.peers.benchmarks import BENCHMARKS, PACE, PACE_HEAD
 from psph.lab.peers.environment import Environment
 from psph.lab.peers.front import draw
-from psph.lab.peers.gas import GAS_HEAD, GasCode, rate, start
+from psph.lab.peers.gas import GAS_HEAD, GasCode, GasPace, rate, start
 from psph.lab.peers.gas_own import OwnGas
 from psph.lab.peers.lammps import LAMMPS
 from psph.lab.peers.own import Earlier, Own
@@ -227,12 +227,21 @@ def gas_rows(codes: dict[str, tuple[GasCode, str]], turns: int, folder: Path, da
                 failed.add(name)
                 continue
             paces.setdefault(name, []).append(found)
-            print(f"{GAS}, {name}: {rate([found])} M particle-steps/s, {found.seconds:.0f} CPU s", flush=True)
+            print(
+                f"{GAS}, {name}: {rate([found])} M particle-steps/s in {found.seconds:.0f} CPU s; "
+                f"{amount([found.own])} CPU s with steps of their own",
+                flush=True,
+            )
     return {
-        name: (rate(paces[name]), paces[name][-1].neighbours, code.scheme, f"{version}, {day}")
+        name: (*gas_cells(paces[name]), code.scheme, f"{version}, {day}")
         for name, (code, version) in codes.items()
         if name not in failed
     }
+
+
+def gas_cells(paces: Sequence[GasPace]) -> Cells:
+    """Of all turns of a code: its pace, its neighbours, and its CPU seconds with steps of their own."""
+    return rate(paces), paces[-1].neighbours, amount([pace.own for pace in paces])
 
 
 def pace(lammps: LAMMPS, page: Path, folder: Path, day: str) -> None:

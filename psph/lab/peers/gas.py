@@ -16,7 +16,14 @@ from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 
-GAS_HEAD = (CODE, "M particle-steps/s of the processor", "neighbours", "what it is", "version, day")
+GAS_HEAD = (
+    CODE,
+    "M particle-steps/s of the processor",
+    "neighbours",
+    "CPU s, own steps",
+    "what it is",
+    "version, day",
+)
 """The first row of its table."""
 
 DIMENSIONS, PARTICLES, NEIGHBOURS = 3, 48**3, 64
@@ -27,6 +34,9 @@ SHORT = WARM_UP
 
 LONG = SHORT + 60
 """Steps of the longer run; what it takes more than the shorter one is that of the steps in between."""
+
+END = 0.04
+"""Until when particles take steps of their own, s."""
 
 
 class GasStart(NamedTuple):
@@ -39,11 +49,13 @@ class GasStart(NamedTuple):
 
 
 class GasPace(NamedTuple):
-    """What a code took: the ``updates`` of a particle, the CPU ``seconds``, the ``neighbours`` in words."""
+    """What a code took: ``updates`` of a particle in CPU ``seconds``, with ``neighbours`` in words, and the
+    CPU seconds until ``END`` with steps of each particle's ``own``."""
 
     updates: int
     seconds: float
     neighbours: str
+    own: float
 
 
 class GasCode(Protocol):
@@ -59,7 +71,7 @@ class GasCode(Protocol):
         """Build it where that is missing; its version.  PeersError: one line why not."""
 
     def pace(self, start: GasStart, folder: Path) -> GasPace:
-        """Its pace from ``SHORT`` to ``LONG`` steps, run in an empty folder."""
+        """Its pace from ``SHORT`` to ``LONG`` steps and until ``END``, run in an empty folder."""
 
 
 def blast(particles: int = PARTICLES):
@@ -75,7 +87,9 @@ def start(particles: int = PARTICLES) -> GasStart:
     return GasStart(position.copy(), heat.copy(), scene.support)
 
 
-def between(name: str, short: tuple[int, float], long: tuple[int, float], neighbours: str) -> GasPace:
+def between(
+    name: str, short: tuple[int, float], long: tuple[int, float], neighbours: str, own: float
+) -> GasPace:
     """The pace from the (updates, CPU seconds) of two runs.  PeersError: the longer took no longer."""
     updates, seconds = long[0] - short[0], long[1] - short[1]
     if updates <= 0 or seconds <= 0.0:
@@ -83,7 +97,13 @@ def between(name: str, short: tuple[int, float], long: tuple[int, float], neighb
             f"{name}: {LONG} steps took {seconds:.2f} s more than {SHORT}, with {updates} more updates of a "
             "particle; let the machine come to rest and run it again"
         )
-    return GasPace(updates, seconds, neighbours)
+    return GasPace(updates, seconds, neighbours, own)
+
+
+def check_end(name: str, time: float, folder: Path) -> None:
+    """PeersError: a run with steps of their own ended before ``END``."""
+    if time < 0.99 * END:
+        raise PeersError(f"{name}: ended at {time:g} s, not at {END:g}; see its output in {folder}")
 
 
 def rate(paces: Sequence[GasPace]) -> str:

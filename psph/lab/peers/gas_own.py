@@ -6,20 +6,28 @@ import sys
 import time
 from pathlib import Path
 
-from psph.lab.bench.measure import go_on, warmed_up, work
-from psph.lab.peers.gas import LONG, PARTICLES, SHORT, GasPace, GasStart, blast
+from psph.lab.bench import GAS
+from psph.lab.bench.measure import BenchProblem, go_on, scene_of, warmed_up, work
+from psph.lab.peers.gas import DIMENSIONS, END, LONG, NEIGHBOURS, PARTICLES, SHORT, GasPace, GasStart, blast
 from psph.lab.peers.own import HERE, Own
 from psph.lab.peers.process import LOG, finished
+from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
+from psph.runs.setup import compile_ahead
 from psph.scene import Scene
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
 
 PATIENCE = 3600.0
+
+OWN_STEPS = "time.halvings=3"
+"""Its key for steps of each particle's own, as `run/cases/gas/sedov_octant.toml` has them."""
 
 
 class OwnGas(Own):
     """psph itself, in a process of its own."""
 
-    scheme = "`gas`: lists of neighbours, one step for all; double precision"
+    scheme = "`gas`, α = 1, lists of neighbours; double precision"
 
     def pace(self, start: GasStart, folder: Path) -> GasPace:
         """Its pace; it makes the particles of ``start`` by itself."""
@@ -42,7 +50,20 @@ def timed(particles: int, steps: int) -> GasPace:
     made = go_on(simulation, steps)
     seconds = time.process_time() - begun
     there, pairs, _ = work(simulation, scene)
-    return GasPace(made * there, seconds, f"{pairs / there:.0f}")
+    return GasPace(made * there, seconds, f"{pairs / there:.0f}", own_steps(particles, END))
+
+
+def own_steps(particles: int, end: float) -> float:
+    """CPU seconds until ``end`` with steps of their own, without what is compiled."""
+    problem, comm = blast(particles), alone()
+    scene = scene_of(BenchProblem(GAS, DIMENSIONS, particles, NEIGHBOURS, "double"), problem, [OWN_STEPS])
+    plan = make_plan(scene)
+    compile_ahead(scene, plan, comm)
+    begun = time.process_time()
+    simulation = Simulation(scene, plan, problem.create(scene, plan, comm), comm, Ledger())
+    while simulation.time < end:
+        simulation.step(end)
+    return time.process_time() - begun
 
 
 if __name__ == "__main__":

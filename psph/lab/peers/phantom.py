@@ -2,13 +2,14 @@
 
 import re
 import statistics
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from psph.lab.bench import GAS
 from psph.lab.errors import PeersError
-from psph.lab.peers.gas import DIMENSIONS, LONG, SHORT, GasPace, GasStart, between
+from psph.lab.peers.gas import DIMENSIONS, END, LONG, SHORT, GasPace, GasStart, between, check_end
 from psph.lab.peers.process import LOG, finished
 from psph.lab.peers.sources import Sources, first_of
 
@@ -24,7 +25,13 @@ NEEDS = "gfortran, gcc and make"
 FLAGS = "-march=native -flto"
 """Beside its own: the fastest of what was tried."""
 
-CHOICES = ("SYSTEM=gfortran", "SETUP=sedov", "IND_TIMESTEPS=no", "CONST_AV=yes", "KERNEL=WendlandC2")
+CHOICES = ("SYSTEM=gfortran", "SETUP=sedov", "CONST_AV=yes", "KERNEL=WendlandC2")
+
+TOGETHER, APART = "IND_TIMESTEPS=no", "IND_TIMESTEPS=yes"
+"""One step for all, or steps of each particle's own: chosen as it is built."""
+
+LONGEST = 0.005
+"""Between its outputs as in its own blast, which is also its longest step of their own, s."""
 
 BLAST, OPTIONS = "blast.txt", "blast.in"
 """The particles and its file of options, in the folder of a run."""
@@ -83,55 +90,65 @@ end module setup
 STEP = re.compile(r"^ t = +\S+ dt = ", re.MULTILINE)
 WITH_ITSELF = re.compile(r"real neigh mean = +(\S+)")
 """What it prints of each step."""
+OUTPUT = re.compile(r"TIME = +([\d.E+-]+)")
+"""What it prints of each output, one of which is at the end."""
 
 
 class Phantom:
     """Phantom as built from the ``sources`` in a ``folder`` of ours."""
 
     name = "Phantom"
-    scheme = "α = 1 everywhere, a new tree in each step, one step for all; double precision"
+    scheme = "α = 1 everywhere, a new tree in each step; double precision"
     objections = {
-        GAS: "it is meant for ifort and for many cores, with steps of each particle's own; its switch of the "
-        "viscosity is off here, and a new tree in each step serves gravity, which this gas has not."
+        GAS: "it is meant for ifort and for many cores, with steps of each particle's own, and with its "
+        "switch of the viscosity, which is off here."
     }
 
     def __init__(self, sources: Path, folder: Path):
         files = ("build/Makefile", "src/main", "src/setup")
-        self.sources = Sources(self.name, "--phantom", sources, folder, files)
-        self.programs = self.sources.copy / "bin"
+        self.built = {
+            steps: Sources(self.name, "--phantom", sources, folder / name, files)
+            for steps, name in ((TOGETHER, "together"), (APART, "apart"))
+        }
 
     def prepare(self) -> str:
         """Build what is missing; the commit of the sources, or that they have none."""
-        self.sources.build(NEEDS, {f"src/setup/{SETUP}": SETUP_TEXT}, self.steps())
-        return self.sources.version()
+        for steps, sources in self.built.items():
+            sources.build(NEEDS, {f"src/setup/{SETUP}": SETUP_TEXT}, self.steps(steps))
+        return self.built[TOGETHER].version()
 
-    def steps(self) -> list[list[str]]:
-        """The commands that build it and its setup.  PeersError: no compiler."""
+    def steps(self, choice: str) -> list[list[str]]:
+        """The commands that build it and its setup, with a ``choice`` of steps.  PeersError: no compiler."""
         compiler = Path(first_of(*COMPILERS)).name
         if not compiler:
             raise PeersError("Phantom is not built: no gfortran on the path; install it")
         archive = compiler.replace("gfortran", "gcc-ar") + " rcs"  # plain ar does not see what -flto leaves
-        words = ["env", f"FFLAGS={FLAGS}", "make", *CHOICES, f"SETUPFILE={SETUP}"]
+        words = ["env", f"FFLAGS={FLAGS}", "make", *CHOICES, choice, f"SETUPFILE={SETUP}"]
         words += [f"FC={compiler}", f"LIBTOOL={archive}"]
         return [words, [*words, "setup"]]
 
     def pace(self, start: GasStart, folder: Path) -> GasPace:
-        """Its pace: the same start for ``SHORT`` and for ``LONG`` steps."""
-        spent = {steps: self.run(start, steps, folder / str(steps)) for steps in (SHORT, LONG)}
-        log = (folder / str(LONG) / LOG).read_text(encoding="utf-8", errors="replace")
-        return between(self.name, spent[SHORT], spent[LONG], neighbours(log))
+        """Its pace: the same start for ``SHORT`` and for ``LONG`` steps, and until ``END``."""
+        spent, told = {}, ""
+        for steps in (SHORT, LONG):
+            changes = {"nmax": steps, "iverbose": 2}
+            told, seconds = self.run(start, TOGETHER, changes, folder / str(steps))
+            spent[steps] = len(start.heat) * made(told, steps), seconds
+        log, own = self.run(start, APART, {"tmax": END, "dtmax": LONGEST}, folder / "own")
+        check_end(self.name, ended(log), folder)
+        return between(self.name, spent[SHORT], spent[LONG], neighbours(told), own)
 
-    def run(self, start: GasStart, steps: int, folder: Path) -> tuple[int, float]:
-        """So many steps: updates of a particle, and CPU seconds of the whole process."""
+    def run(self, start: GasStart, steps: str, changes: Mapping, folder: Path) -> tuple[str, float]:
+        """A run of the build with such ``steps``: what it printed, and CPU seconds of the whole process."""
         folder.mkdir(parents=True)
         write(start, folder / BLAST)
         room = f"--maxp={round(1.1 * len(start.heat))}"
-        prefix = OPTIONS.partition(".")[0]
-        self.finish("its setup", [self.programs / "phantomsetup", prefix, room], folder)
+        programs, prefix = self.built[steps].copy / "bin", OPTIONS.partition(".")[0]
+        self.finish("its setup", [programs / "phantomsetup", prefix, room], folder)
         options = folder / OPTIONS
-        options.write_text(as_asked(options.read_text(encoding="utf-8"), steps), encoding="utf-8")
-        seconds = self.finish(f"{steps} steps", [self.programs / "phantom", OPTIONS, room], folder)
-        return len(start.heat) * made((folder / LOG).read_text(errors="replace"), steps), seconds
+        options.write_text(as_asked(options.read_text(encoding="utf-8"), changes), encoding="utf-8")
+        seconds = self.finish(folder.name, [programs / "phantom", OPTIONS, room], folder)
+        return (folder / LOG).read_text(encoding="utf-8", errors="replace"), seconds
 
     def finish(self, what: str, words: list, folder: Path) -> float:
         """CPU seconds of one of its programs, which keeps whole arrays on the stack."""
@@ -148,9 +165,9 @@ def write(start: GasStart, file: Path) -> None:
     np.savetxt(file, rows, fmt="%.17g", header=head, comments="")
 
 
-def as_asked(options: str, steps: int) -> str:
-    """Its file of options with so many steps, each of which it tells.  PeersError: it has other options."""
-    for key, value in {"nmax": steps, "iverbose": 2}.items():
+def as_asked(options: str, changes: Mapping) -> str:
+    """Its file of options with these ``changes`` by key.  PeersError: it has other options."""
+    for key, value in changes.items():
         options, found = re.subn(rf"(?m)^( *{key} *= *)\S+", rf"\g<1>{value}", options)
         if found != 1:
             raise PeersError(
@@ -165,6 +182,11 @@ def made(log: str, steps: int) -> int:
     if told != steps:
         raise PeersError(f"Phantom: {told} steps in its log in place of {steps}; see {LOG} of its run")
     return steps
+
+
+def ended(log: str) -> float:
+    """The time of its last output, s; 0: it has none."""
+    return max(map(float, OUTPUT.findall(log)), default=0.0)
 
 
 def neighbours(log: str) -> str:

@@ -1,5 +1,6 @@
 """SWIFT, from a folder of its sources: its minimal scheme, all particles in one bin of steps."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import h5py
@@ -7,7 +8,7 @@ import numpy as np
 
 from psph.lab.bench import GAS
 from psph.lab.errors import PeersError
-from psph.lab.peers.gas import DIMENSIONS, LONG, SHORT, GasPace, GasStart, between
+from psph.lab.peers.gas import DIMENSIONS, END, LONG, SHORT, GasPace, GasStart, between, check_end
 from psph.lab.peers.process import finished
 from psph.lab.peers.sources import Sources, first_of
 
@@ -44,9 +45,9 @@ InternalUnitSystem:
   UnitTemp_in_cgs: 1
 TimeIntegration:
   time_begin: 0.
-  time_end: 1.
+  time_end: {end}
   dt_min: 1e-9
-  dt_max: 5e-4  # 2^-11 after rounding: as long as the first steps of psph
+  dt_max: {longest}
 Snapshots:
   basename: blast
   time_first: 2.  # none
@@ -55,7 +56,7 @@ Statistics:
   delta_time: 2.  # none
 SPH:
   resolution_eta: {eta:.6g}
-  CFL_condition: 0.3  # nobody asks for less than dt_max: all particles are in one bin
+  CFL_condition: {courant}
 Scheduler:
   max_top_level_cells: 3  # the fastest of 3, 4, 6, 8, 12, 16 and 19 here
   cell_split_size: 100  # the fastest of 50, 100, 200 and 400 here
@@ -63,6 +64,12 @@ InitialConditions:
   file_name: {file}
   periodic: 1
 """
+
+TOGETHER = {"end": 1.0, "longest": 5e-4, "courant": 0.3}
+"""Steps of 2^-11 s, about as long as psph's: by this number nobody asks for less, so all are in one bin."""
+
+APART = {"end": END, "longest": 0.01, "courant": 0.1}
+"""Steps of each particle's own, as in its example of a blast."""
 
 UNITS = ("length in cgs (U_L)", "mass in cgs (U_M)", "time in cgs (U_t)")
 UNITS += ("current in cgs (U_I)", "temperature in cgs (U_T)")
@@ -78,10 +85,10 @@ class SWIFT:
     """SWIFT as built from the ``sources`` in a ``folder`` of ours."""
 
     name = "SWIFT"
-    scheme = "minimal SPH, one bin of steps for all; single precision, places double"
+    scheme = "minimal SPH, α = 0.8; single precision, places double"
     objections = {
         GAS: "it is built for many threads and for steps of each particle's own, which one step for all "
-        "hides; it solves for h to 1e-4, and gcc 12 is an old compiler for its vectors."
+        "hides; it solves for h to 1e-4; gcc 12 is old."
     }
 
     def __init__(self, sources: Path, folder: Path):
@@ -100,19 +107,23 @@ class SWIFT:
         return [*([] if prepared else [["./autogen.sh"]]), ["./configure", *OPTIONS, *hdf5()], *BUILD]
 
     def pace(self, start: GasStart, folder: Path) -> GasPace:
-        """Its pace: the same start for ``SHORT`` and for ``LONG`` steps."""
-        spent = {steps: self.run(start, steps, folder / str(steps)) for steps in (SHORT, LONG)}
-        record = (folder / str(LONG) / RECORD).read_text(encoding="utf-8")
-        return between(self.name, spent[SHORT], spent[LONG], neighbours(record))
+        """Its pace: the same start for ``SHORT`` and for ``LONG`` steps, and until ``END``."""
+        spent, told = {}, ""
+        for steps in (SHORT, LONG):
+            told, seconds = self.run(start, TOGETHER, folder / str(steps), "-n", str(steps))
+            spent[steps] = updates(told), seconds
+        record, own = self.run(start, APART, folder / "own")
+        check_end(self.name, ended(record), folder)
+        return between(self.name, spent[SHORT], spent[LONG], neighbours(told), own)
 
-    def run(self, start: GasStart, steps: int, folder: Path) -> tuple[int, float]:
-        """So many steps: updates of a particle, and CPU seconds of the whole process."""
+    def run(self, start: GasStart, steps: Mapping, folder: Path, *more: str) -> tuple[str, float]:
+        """A run with such ``steps``: its record, and CPU seconds of the whole process."""
         folder.mkdir(parents=True)
         write(start, folder / BLAST)
-        (folder / PARAMETERS).write_text(parameters(start), encoding="utf-8")
-        words = [self.program, "--hydro", "--threads=1", "-n", steps, PARAMETERS]
-        seconds = finished(f"SWIFT, {steps} steps", words, folder, PATIENCE)
-        return updates((folder / RECORD).read_text(encoding="utf-8")), seconds
+        (folder / PARAMETERS).write_text(parameters(start, steps), encoding="utf-8")
+        words = [self.program, "--hydro", "--threads=1", *more, PARAMETERS]
+        seconds = finished(f"SWIFT, {folder.name}", words, folder, PATIENCE)
+        return (folder / RECORD).read_text(encoding="utf-8"), seconds
 
 
 def hdf5() -> tuple[str, ...]:
@@ -124,10 +135,10 @@ def hdf5() -> tuple[str, ...]:
     return ()
 
 
-def parameters(start: GasStart) -> str:
+def parameters(start: GasStart, steps: Mapping) -> str:
     """Its file of options: sizes by as many neighbours as psph has."""
     eta = start.support / REACH * len(start.heat) ** (1.0 / DIMENSIONS)
-    return OPTIONS_OF_RUN.format(eta=eta, file=BLAST)
+    return OPTIONS_OF_RUN.format(eta=eta, file=BLAST, **steps)
 
 
 def write(start: GasStart, file: Path) -> None:
@@ -155,10 +166,20 @@ def write(start: GasStart, file: Path) -> None:
 
 def updates(record: str) -> int:
     """Updates of a particle in all steps of its record."""
+    return sum(int(row[UPDATES]) for row in rows_of_steps(record))
+
+
+def ended(record: str) -> float:
+    """The time after the last step, s."""
+    return float(rows_of_steps(record)[-1][TIME])
+
+
+def rows_of_steps(record: str) -> list[list[str]]:
+    """The columns of each step.  PeersError: there is none."""
     rows = [line.split() for line in record.splitlines() if line.strip() and not line.startswith("#")]
     if not rows or len(rows[-1]) <= UPDATES:
         raise PeersError(f"SWIFT: no steps in {RECORD}; see what it printed beside that file")
-    return sum(int(row[UPDATES]) for row in rows)
+    return rows
 
 
 def neighbours(record: str) -> str:

@@ -68,7 +68,9 @@ def test_swift_reads_the_same_particles_in_a_box_from_0_on(start, tmp_path):
 
 def test_the_sizes_hold_as_many_neighbours_in_each_code(start, tmp_path):
     """65 with the particle itself: by η of SWIFT and by h over the spacing of Phantom."""
-    [line] = [line for line in swift.parameters(start).splitlines() if "resolution_eta" in line]
+    [line] = [
+        line for line in swift.parameters(start, swift.TOGETHER).splitlines() if "resolution_eta" in line
+    ]
     eta = float(line.split()[1])
     phantom.write(start, tmp_path / phantom.BLAST)
     n, h = (tmp_path / phantom.BLAST).read_text().splitlines()[0].split()
@@ -94,11 +96,11 @@ OPTIONS = """\
 
 def test_its_options_are_changed_and_no_others():
     """Control: options that are not there."""
-    changed = phantom.as_asked(OPTIONS, 80)
+    changed = phantom.as_asked(OPTIONS, {"nmax": 80, "iverbose": 2})
     assert "nmax =          80    ! how" in changed and "iverbose =           2 " in changed
     assert "nout =          -1 " in changed
     with pytest.raises(PeersError, match="no single nmax in blast.in; its sources have changed"):
-        phantom.as_asked(OPTIONS.replace("nmax", "steps"), 80)
+        phantom.as_asked(OPTIONS.replace("nmax", "steps"), {"nmax": 80})
 
 
 # How they are read
@@ -115,7 +117,7 @@ RECORD = """\
 
 def test_updates_of_swift_are_counted_as_they_are():
     assert swift.updates(RECORD) == 1124 and swift.neighbours(RECORD) == "64"
-    assert swift.neighbours("") == "–"
+    assert swift.neighbours("") == "–" and swift.ended(RECORD) == 9.8e-4
     with pytest.raises(PeersError, match="SWIFT: no steps in timesteps.txt"):
         swift.updates("# nothing\n")
 
@@ -134,24 +136,31 @@ def test_steps_of_phantom_are_counted_and_their_neighbours_are_those_of_the_late
     assert phantom.made(log(LONG), LONG) == LONG and phantom.neighbours(log(LONG)) == "66"
     with pytest.raises(PeersError, match="Phantom: 79 steps in its log in place of 80"):
         phantom.made(log(LONG - 1), LONG)
+    outputs = "---->   TIME =    0.000    : full dump\n---->   TIME =   0.4000E-01: small dump\n"
+    assert phantom.ended(outputs) == 0.04 and phantom.ended(log(LONG)) == 0.0
 
 
 def test_a_pace_is_that_between_two_runs():
     """Control: a longer run that took no longer."""
-    pace = gas.between("it", (20 * 512, 5.0), (80 * 512, 11.0), "64")
-    assert pace == GasPace(60 * 512, 6.0, "64")
+    pace = gas.between("it", (20 * 512, 5.0), (80 * 512, 11.0), "64", 3.0)
+    assert pace == GasPace(60 * 512, 6.0, "64", 3.0)
     assert gas.rate([pace]) == "0.0051"
-    assert gas.rate([GasPace(10**6, s, "64") for s in (1.0, 2.0, 4.0)]) == "0.5 (0.25–1)"
+    assert gas.rate([GasPace(10**6, s, "64", 3.0) for s in (1.0, 2.0, 4.0)]) == "0.5 (0.25–1)"
     with pytest.raises(PeersError, match="it: 80 steps took -1.00 s more than 20"):
-        gas.between("it", (1, 5.0), (2, 4.0), "64")
+        gas.between("it", (1, 5.0), (2, 4.0), "64", 3.0)
 
 
 def test_psph_tells_the_pace_of_its_own_steps():
     """A small blast, which is read as it is printed."""
     pace = gas_own.timed(8000, 2)
-    assert pace.updates == 16000 and pace.seconds > 0.0 and float(pace.neighbours) == pytest.approx(64, abs=6)
-    assert gas_own.told('begins\n{"updates": 3, "seconds": 0.5, "neighbours": "64"}\n') == GasPace(
-        3, 0.5, "64"
+    assert (
+        pace.updates == 16000
+        and pace.seconds > 0.0
+        and float(pace.neighbours) == pytest.approx(64, abs=6)
+        and pace.own > 0.0
+    )
+    assert gas_own.told('begins\n{"updates": 3, "seconds": 0.5, "neighbours": "64", "own": 2}\n') == GasPace(
+        3, 0.5, "64", 2
     )
 
 
@@ -205,12 +214,13 @@ def test_swift_is_built_with_the_hdf5_that_is_here(given, tmp_path, monkeypatch)
 def test_phantom_is_built_by_the_gfortran_that_is_here(given, tmp_path, monkeypatch):
     code = phantom.Phantom(given, tmp_path / "ours")
     found(monkeypatch, "gfortran-12")
-    program, setup = code.steps()
+    program, setup = code.steps(phantom.APART)
+    assert "IND_TIMESTEPS=yes" in program
     assert {"FC=gfortran-12", "LIBTOOL=gcc-ar-12 rcs", f"SETUPFILE={phantom.SETUP}"} <= {*program}
     assert setup == [*program, "setup"] and "FFLAGS=-march=native -flto" in program
     found(monkeypatch)
     with pytest.raises(PeersError, match="Phantom is not built: no gfortran on the path; install it"):
-        code.steps()
+        code.steps(phantom.TOGETHER)
 
 
 # The table
@@ -239,7 +249,7 @@ class Fake:
         spent = self.seconds.pop(0)
         if spent is None:
             raise PeersError(f"{self.name}: fell over")
-        return GasPace(10**6, spent, "64")
+        return GasPace(10**6, spent, "64", 10 * spent)
 
 
 def test_the_table_of_the_page_is_of_the_command():
@@ -251,7 +261,7 @@ def test_codes_take_turns_and_one_that_fails_keeps_its_row(start, tmp_path, monk
     monkeypatch.setattr(command, "start", lambda: start)
     codes = {code.name: (code, "1.0") for code in (Fake("good", 1.0, 2.0), Fake("bad", 1.0, None))}
     rows = command.gas_rows(codes, 2, tmp_path, "2026-11-30")
-    assert rows == {"good": ("0.75 (0.5–1)", "64", "a scheme", "1.0, 2026-11-30")}
+    assert rows == {"good": ("0.75 (0.5–1)", "64", "15 (10–20)", "a scheme", "1.0, 2026-11-30")}
     assert "bad: fell over; its row is kept" in capsys.readouterr().out
 
 
@@ -262,7 +272,7 @@ def run(page, *words):
 
 def test_without_sources_there_is_a_line_and_the_row_is_kept(page, start, monkeypatch, capsys):
     """psph is a quick stand-in here."""
-    put(page, GAS, GAS_HEAD, {"SWIFT": ("0.1", "64", "minimal", "a, 1")})
+    put(page, GAS, GAS_HEAD, {"SWIFT": ("0.1", "64", "9", "minimal", "a, 1")})
     monkeypatch.setattr(command, "start", lambda: start)
     monkeypatch.setattr(command, "OwnGas", lambda: Fake("psph", 2.0))
     monkeypatch.setattr(command, "draw", lambda page, file: file)
@@ -271,7 +281,7 @@ def test_without_sources_there_is_a_line_and_the_row_is_kept(page, start, monkey
     for k, (code, option) in enumerate((("SWIFT", "--swift"), ("Phantom", "--phantom"))):
         assert said[k] == f"{code}: no sources; give their folder with {option} FOLDER; its rows are kept"
     rows = rows_of(part(page, GAS))
-    assert rows["SWIFT"] == ("0.1", "64", "minimal", "a, 1") and rows["psph"][0] == "0.5"
+    assert rows["SWIFT"] == ("0.1", "64", "9", "minimal", "a, 1") and rows["psph"][0] == "0.5"
     assert "SWIFT's author would say" in part(page, GAS) and "Phantom's author would say" in part(page, GAS)
 
 
