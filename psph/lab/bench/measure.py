@@ -84,7 +84,7 @@ def measure(
     rival_scene = scene_of(asked, layout, against) if against else None
     simulation, compiling = warmed_up(layout, scene, comm)
     rival = warmed_up(layout, rival_scene, comm)[0] if against else None
-    count, pairs, entries = _work(simulation, scene)
+    count, pairs, entries = work(simulation, scene)
     in_bulk = layout.in_bulk(scene, simulation)
     with Peer(peer_python, scene, simulation, layout.peer) if peer_python else nullcontext() as peer:
         simulation.ledger.seconds.clear()
@@ -124,7 +124,7 @@ def measure(
     if peer:
         result[PEER] = {**peer.described, **_beside(seconds, PEER, count, pairs / count)}
     if rival:
-        within = _work(rival, rival_scene)[1] / count
+        within = work(rival, rival_scene)[1] / count
         result[AGAINST] = {
             "overrides": [*against],
             "neighbours": round(within, 1),
@@ -226,11 +226,11 @@ def _mean_over_ranks(ledger: Ledger, comm) -> dict[str, float]:
     return {name: sum(part.get(name, 0.0) for part in parts) / comm.size for name in names}
 
 
-def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
+def work(simulation: Simulation, scene) -> tuple[int, int, int]:
     """Particles, ordered pairs inside the kernel's support and entries of the lists, in all."""
     store, lists, comm = simulation.store, simulation.domain.lists, simulation.comm
     if not simulation.plan.passes:
-        pairs = sum(work.pairs() for work in simulation.engine.kinds)
+        pairs = sum(kind.pairs() for kind in simulation.engine.kinds)
         return tuple(comm.allreduce(n) for n in (store.owned, pairs, pairs))
     sizes = simulation.plan.sizes
     support = np.full(store.total, scene.support) if sizes is None else sizes.support * store[sizes.length]

@@ -10,17 +10,22 @@ from datetime import date
 from pathlib import Path
 
 from psph.errors import Foreseen
+from psph.lab.bench import GAS
 from psph.lab.bench.measure import machine
 from psph.lab.errors import PeersError, RunBlewUp
 from psph.lab.peers.benchmarks import BENCHMARKS, PACE, PACE_HEAD
 from psph.lab.peers.environment import Environment
 from psph.lab.peers.front import draw
+from psph.lab.peers.gas import GAS_HEAD, GasCode, GasPace, rate, start
+from psph.lab.peers.gas_own import OwnGas
 from psph.lab.peers.lammps import LAMMPS
 from psph.lab.peers.own import Earlier, Own
 from psph.lab.peers.page import Cells, part, put
+from psph.lab.peers.phantom import Phantom
 from psph.lab.peers.pysph import PySPH
 from psph.lab.peers.records import Code, Outcome
 from psph.lab.peers.sphinxsys import SPHinXsys
+from psph.lab.peers.swift import SWIFT
 from psph.output.pages import renew
 
 PAGE, FOLDER = Path("docs/peers.md"), Path("build/peers")
@@ -38,15 +43,18 @@ RUNS = "runs"
 def options() -> argparse.ArgumentParser:
     """The options of run/peers."""
     made = argparse.ArgumentParser(
-        "run/peers", description="Run psph beside PySPH, SPHinXsys and LAMMPS, and renew docs/peers.md."
+        "run/peers",
+        description="Run psph beside PySPH, SPHinXsys, LAMMPS, SWIFT and Phantom, and renew docs/peers.md.",
     )
     made.add_argument("--quick", action="store_true", help="vortices, tank and pace alone: some ten minutes")
-    made.add_argument("--only", nargs="+", choices=[*BENCHMARKS, PACE], help="these benchmarks alone")
+    made.add_argument("--only", nargs="+", choices=[*BENCHMARKS, PACE, GAS], help="these benchmarks alone")
     made.add_argument("--turns", type=int, default=1, help="how often each code has its turn (default: 1)")
     made.add_argument(
         "--folder", type=Path, default=FOLDER, help=f"for environments, runs (default: {FOLDER})"
     )
     made.add_argument("--sphinxsys", type=Path, help="a folder with the sources of SPHinXsys, to be built")
+    made.add_argument("--swift", type=Path, help="a folder with the sources of SWIFT, to be built")
+    made.add_argument("--phantom", type=Path, help="a folder with the sources of Phantom, to be built")
     made.add_argument("--before", type=Path, help="a checkout of older sources of psph, to run beside")
     made.add_argument("--alone", action="store_true", help="psph alone: other codes keep their rows")
     made.add_argument("--page", type=Path, default=PAGE, help=f"the page (default: {PAGE})")
@@ -56,7 +64,7 @@ def options() -> argparse.ArgumentParser:
 def chosen(asked: argparse.Namespace) -> list[str]:
     """The names of the benchmarks that are asked for."""
     usual = [name for name, of in BENCHMARKS.items() if of.quick or not asked.quick]
-    return asked.only or [*usual, PACE]
+    return asked.only or [*usual, PACE, *([] if asked.quick else [GAS])]
 
 
 def ready(codes: Iterable[Code]) -> dict[str, tuple[Code, str]]:
@@ -158,25 +166,82 @@ def compare(asked: argparse.Namespace) -> None:
     for name in (*benchmarks, MACHINE):
         part(asked.page, name)  # before anything is run
     environment = Environment(folder / "environment")
-    others: list = [Earlier(asked.before)] if asked.before else []
-    others += [] if asked.alone else [PySPH(environment)]
-    if asked.sphinxsys:
-        others.append(SPHinXsys(asked.sphinxsys, folder / "sphinxsys"))
-    elif not asked.alone:
-        print(
-            "SPHinXsys: no sources; give their folder with --sphinxsys FOLDER; its rows are kept", flush=True
-        )
     where, all_codes = measured_on(asked.turns, day), (PySPH, SPHinXsys)
-    codes = ready([Own(), *others]) if benchmarks != [PACE] else {}
+    flows = BENCHMARKS.keys() & benchmarks
+    liquids = [Own(), *liquid_codes(asked, environment, folder)] if flows else []
+    blasts = [*gas_codes(asked, folder), OwnGas()] if GAS in benchmarks else []
+    codes = ready(liquids)
     for name in benchmarks:
-        if name != PACE:
+        if name in flows:
             rows = in_turns(name, codes, asked.turns, folder / RUNS, day)
             put(asked.page, name, BENCHMARKS[name].head, rows, objections(name, all_codes))
+        elif name == GAS:
+            rows = gas_rows(ready(blasts), asked.turns, folder / RUNS, day)
+            put(asked.page, GAS, GAS_HEAD, rows, objections(GAS, (SWIFT, Phantom)))
         elif not asked.alone:
             pace(LAMMPS(environment), asked.page, folder / RUNS, day)
     renew(asked.page, where, MACHINE)
     picture = draw(asked.page, asked.page.parent / PICTURE)
     print(f"{asked.page} holds what was measured, {picture} shows it.")
+
+
+def liquid_codes(asked: argparse.Namespace, environment: Environment, folder: Path) -> list[Code]:
+    """The codes beside psph for liquids; PeersError: a folder that is given has no sources."""
+    found: list = [Earlier(asked.before)] if asked.before else []
+    found += [] if asked.alone else [PySPH(environment)]
+    return found + from_sources([(SPHinXsys, asked.sphinxsys)], asked.alone, folder)
+
+
+def gas_codes(asked: argparse.Namespace, folder: Path) -> list[GasCode]:
+    """Those for gases."""
+    return from_sources([(SWIFT, asked.swift), (Phantom, asked.phantom)], asked.alone, folder)
+
+
+def from_sources(given: Iterable[tuple], alone: bool, folder: Path) -> list:
+    """The codes whose sources are given; of each other one a line is printed, unless psph runs ``alone``.
+
+    ``given``: pairs of a code's class and the folder of its sources, or None.
+    """
+    found = []
+    for code, sources in given:
+        option = code.name.lower()
+        if sources:
+            found.append(code(sources, folder / option))
+        elif not alone:
+            print(
+                f"{code.name}: no sources; give their folder with --{option} FOLDER; its rows are kept",
+                flush=True,
+            )
+    return found
+
+
+def gas_rows(codes: dict[str, tuple[GasCode, str]], turns: int, folder: Path, day: str) -> dict[str, Cells]:
+    """The rows of the blast: each code runs once in each turn, one after the other."""
+    paces, failed, begin = {}, set(), start()
+    for turn in range(turns):
+        for name in [name for name in codes if name not in failed]:
+            try:
+                found = codes[name][0].pace(begin, fresh(folder / f"{GAS}-{name}-{turn}"))
+            except PeersError as error:
+                print(f"{error}; its row is kept", flush=True)
+                failed.add(name)
+                continue
+            paces.setdefault(name, []).append(found)
+            print(
+                f"{GAS}, {name}: {rate([found])} M particle-steps/s in {found.seconds:.0f} CPU s; "
+                f"{amount([found.own])} CPU s with steps of their own",
+                flush=True,
+            )
+    return {
+        name: (*gas_cells(paces[name]), code.scheme, f"{version}, {day}")
+        for name, (code, version) in codes.items()
+        if name not in failed
+    }
+
+
+def gas_cells(paces: Sequence[GasPace]) -> Cells:
+    """Of all turns of a code: its pace, its neighbours, and its CPU seconds with steps of their own."""
+    return rate(paces), paces[-1].neighbours, amount([pace.own for pace in paces])
 
 
 def pace(lammps: LAMMPS, page: Path, folder: Path, day: str) -> None:

@@ -11,7 +11,7 @@ from psph.lab.bench.blast import COLD, HOT, RADIUS, Blast
 from psph.lab.bench.box import FluidBox
 from psph.lab.bench.command import one, standard
 from psph.lab.bench.falling import COARSEST, Falling, fall
-from psph.lab.bench.measure import _work, go_on
+from psph.lab.bench.measure import go_on, work
 from psph.lab.bench.tank import HEIGHT, Tank
 from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
@@ -82,7 +82,7 @@ def test_a_blast_has_the_neighbours_that_are_asked_for():
     scene = Scene(blast.case())
     plan = make_plan(scene)
     simulation = Simulation(scene, plan, blast.create(scene, plan, alone()), alone(), Ledger())
-    count, pairs, entries = _work(simulation, scene)
+    count, pairs, entries = work(simulation, scene)
     assert pairs / count == pytest.approx(64, rel=0.03) and entries > 1.5 * pairs
     heat = simulation.store.shown("thermal_energy")
     assert set(heat.tolist()) == {HOT, COLD}

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from psph.case import load
+from psph.lab.bench import GAS
 from psph.lab.errors import PeersError
 from psph.lab.peers import cavity, command, judge, own, own_runs, pysph, pysph_side, sphinxsys
 from psph.lab.peers.benchmarks import BENCHMARKS, PACE, PACE_HEAD
@@ -270,7 +271,7 @@ HEAD = ("code", "L2", "version, day")
 
 @pytest.fixture
 def page(tmp_path):
-    names = [*BENCHMARKS, PACE, command.MACHINE]
+    names = [*BENCHMARKS, PACE, GAS, command.MACHINE]
     path = tmp_path / "peers.md"
     path.write_text(
         "# Peers\n" + "".join(f"\n<!-- {n}: begin -->\n<!-- {n}: end -->\nafter {n}\n" for n in names)
@@ -365,7 +366,7 @@ def test_a_missing_code_is_one_line_and_the_others_run(page, monkeypatch, capsys
 def test_quick_leaves_the_long_ones_out():
     asked = [command.options().parse_args(words) for words in ([], ["--quick"], ["--only", "box"])]
     everything, quick, only = map(command.chosen, asked)
-    assert everything == [*BENCHMARKS, PACE] and only == ["box"]
+    assert everything == [*BENCHMARKS, PACE, GAS] and only == ["box"]
     assert quick == ["taylor_green", "tank", PACE]
 
 
