@@ -34,9 +34,9 @@ def shorn(case, steps, comm=MPI.COMM_SELF, speed=1.0):
     made, looks, skin = [], [], simulation.neighbourhood.skin
     see = skin._see_who_goes_together
 
-    def seen():
+    def seen(mirrored):
         looks.append(simulation.steps)
-        return see()
+        return see(mirrored)
 
     skin._see_who_goes_together = seen
     for _ in range(steps):

@@ -88,7 +88,7 @@ class SWIFT:
     scheme = "minimal SPH, α = 0.8; single precision, places double"
     objections = {
         GAS: "it is built for many threads and for steps of each particle's own, which one step for all "
-        "hides; it solves for h to 1e-4; gcc 12 is old."
+        "hides; it solves for h to 1e-4; a newer compiler would make more of this processor."
     }
 
     def __init__(self, sources: Path, folder: Path):
