@@ -59,12 +59,12 @@ def test_a_bound_is_no_less_than_what_a_look_finds(tmp_path, monkeypatch):
     """Of who stray anyhow, each by another way; the control, which forgets these ways, is less."""
     simulation = shorn(long_wave(tmp_path), 5)[0]
     straying, store, rng = simulation.neighbourhood.skin, simulation.store, np.random.default_rng(1)
-    straying._see_who_goes_together()
+    straying._see_who_goes_together(0.0)
     look, narrow = straying._look, 0.002 * straying._look.narrowest
     for n in range(20):
         for x in store["position"]:
             x[store.inner] += narrow * (rng.uniform(-1.0, 1.0, store.owned) + n)
-        found = straying._see_who_goes_together()
+        found = straying._see_who_goes_together(0.0)
         assert straying._bound(look) > found > 0.5 * look.apart
 
 
