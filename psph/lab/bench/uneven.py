@@ -10,12 +10,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from mpi4py import MPI
 from scipy.spatial import cKDTree
 
 from psph.engine.jit import uncounted
 from psph.fields import LISTED_POSITION, POSITION, view_of
 from psph.parallel.domain import Domain, Extent, Travels
+from psph.parallel.reductions import alone
 from psph.particles import levels, neighbours
 from psph.particles.level_candidates import box_around, gather
 from psph.particles.level_ranges import candidates, extent, of_level
@@ -122,7 +122,7 @@ def alike(dimensions: int, side: int, repeats: int = REPEATS) -> float:
     store = Store(dimensions, [POSITION, LISTED_POSITION], {}, view_of(()))
     store.append(np.arange(n), np.zeros(n, np.uint8), np.concatenate([x, x]))
     ends = (-0.5,) * dimensions, (0.5,) * dimensions, (None,) * dimensions
-    domain = Domain(MPI.COMM_SELF, store, Extent(0, *ends), reach, Travels((), ("position",)), 1)
+    domain = Domain(alone(), store, Extent(0, *ends), reach, Travels((), ("position",)), 1)
     domain.rebuild()
     found = domain.grid, domain.starts, domain.planes, reach, domain.periods
     told = domain.lists, store, *found, 1, None, neighbours.fill_lists
