@@ -152,6 +152,15 @@ def test_finer_panels_change_nothing_around_a_sphere():
     assert fine[0] > 1.03 * dying(*let_go(0.5, 8.0, 1.0, 0.125, 2.0, panel=0.1))[0]  # the walls are felt
 
 
+def test_the_curve_beside_the_cases_is_that_of_potential_flow():
+    """What `study` compares heaving spheres with, to its last place."""
+    file = Path(CASES, "experiments/heaving_sphere_potential_flow.csv")
+    told = np.loadtxt(file, delimiter=",", skiprows=3)
+    times, heights = let_go(0.5, tank=2.5, depth=1.0, lift=0.125, end=2.0)
+    assert len(told) == 101
+    assert told[:, 1] == pytest.approx(1.0 + np.interp(told[:, 0], times, heights), abs=1e-5)
+
+
 @LONG
 @pytest.mark.timeout(900)
 def test_a_sphere_heaves_with_the_period_of_potential_flow_in_its_tank(tmp_path):
