@@ -135,10 +135,11 @@ def noted(case, comm, steps, folder):
 def resumed(case, comm, steps, folder):
     """From a checkpoint, most often of another number of ranks."""
     middle = steps // 2
-    keep(go(begun(case, comm), middle), case, folder)
+    simulation = go(begun(case, comm), middle)
+    keep(simulation, case, folder)
     comm.Barrier()
     theirs = folder.with_name(str(WRITTEN_BY[comm.size]))
-    return go(taken_up(case, theirs / f"checkpoint-{middle}.h5", comm), steps - middle)
+    return go(taken_up(case, theirs / f"checkpoint-{simulation.steps}.h5", comm), steps - middle)
 
 
 def nudged(case, comm, steps, folder):

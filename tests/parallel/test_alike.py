@@ -13,7 +13,7 @@ from invariances.scenes import SCENES
 from invariances.streams import STREAMS
 from jobs import mpirun
 from long import long_but_for, tell
-from parallel import gas_scenes
+from parallel import gas_scenes, refined_scenes
 from parallel.scenes import FAMILIES, scene
 from remedies import FILES, beside
 
@@ -52,6 +52,15 @@ def test_gases_of_many_sizes_have_the_same_bits_however_they_are_run(name, tmp_p
     for seed in range(2):
         (tmp_path / f"{seed}.toml").write_text(gas_scenes.scene(gas_scenes.FAMILIES[name], seed))
     all_alike(told(tmp_path, 16), 2)
+
+
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("name", long_but_for((), refined_scenes.FAMILIES))
+def test_finer_regions_have_the_same_bits_however_they_are_run(name, tmp_path):
+    """Coarse and fine ones with steps of their own; regions that rest, go with a front or with a body."""
+    for seed in range(2):
+        (tmp_path / f"{seed}.toml").write_text(refined_scenes.scene(refined_scenes.FAMILIES[name], seed))
+    all_alike(told(tmp_path, 20), 2)
 
 
 TENSE = [name for name, one in SCENES.items() if "surface_tension" in str(one)]
