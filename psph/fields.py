@@ -234,7 +234,8 @@ IDENTITY = (
     Field(
         "kind",
         "1",
-        "0 fluid, 1 wall, 2 elastic solid, 3 other, 4 buffer of an open end, 5 ideal gas",
+        "0 fluid, 1 wall, 2 elastic solid, 3 other, 4 buffer of an open end or follower of another level of "
+        "sizes, 5 ideal gas",
         saved=True,
     ),
     Field("group", "1", "number of its fluid, solid or wall, in the order of the case", saved=True),

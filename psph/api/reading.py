@@ -7,7 +7,7 @@ from typing import Any, overload
 import numpy as np
 
 from psph.errors import Refused
-from psph.fields import FLUID
+from psph.fields import FLUID, GAS
 from psph.output.gauges.units import quantity_of, unit_of
 from psph.output.probes import FRONT, MEASURED
 from psph.output.reader import Run
@@ -145,8 +145,8 @@ class Frame(Mapping[str, np.ndarray]):
 
     @property
     def fluid(self) -> np.ndarray:
-        """True (n,) for particles of fluids: ``frame.position[frame.fluid]``."""
-        return self["kind"] == FLUID
+        """True (n,) for particles of fluids and ideal gases: ``frame.position[frame.fluid]``."""
+        return np.isin(self["kind"], (FLUID, GAS))
 
     def __repr__(self) -> str:
         return f"<psph.Frame {self.number} at {self.time:.6g} s: {', '.join(self._fields)}>"

@@ -22,8 +22,11 @@ class CaseError(Refused):
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that ``word`` was likely meant to be, or None."""
+    """The known word that ``word`` was likely meant to be, or None: the one that has it as a part."""
     by_lower_case = {name.lower(): name for name in known}
+    whole = [name for name in by_lower_case if word.lower() in name.split("_")]
+    if len(whole) == 1:
+        return by_lower_case[whole[0]]
     near = difflib.get_close_matches(word.lower(), by_lower_case, n=1)
     return by_lower_case[near[0]] if near else None
 

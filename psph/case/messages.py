@@ -117,8 +117,8 @@ def _as_written(details: Details, data: Any) -> Location:
         if is_place or isinstance(data, dict) and key in data:
             data = data[key]
             loc.append(key)
-        elif details["type"] == "missing" and isinstance(data, dict) and key == details["loc"][-1]:
-            loc.append(key)
+        elif details["type"] == "missing" and not isinstance(data, list) and key == details["loc"][-1]:
+            loc.append(key)  # of a number in the place of a table too
     return tuple(loc)
 
 

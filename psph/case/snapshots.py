@@ -153,7 +153,8 @@ def _of_csv(path: Path) -> dict[str, np.ndarray]:
     }
     wanted = [name for of in columns.values() for name in of]
     if missing := [name for name in wanted if name not in names]:
-        raise Unfit(f"{path} has no column {named(missing)}, only {named(names)}; add it, 0 where at rest")
+        rest = ", 0 where at rest" if missing != ["mass"] else ""
+        raise Unfit(f"{path} has no column {named(missing)}, only {named(names)}; add it{rest}")
     rows = numbers_of(path, names, cells, wanted)
     found, first = {}, 0
     for name, of in columns.items():
@@ -166,7 +167,9 @@ def _of_csv(path: Path) -> dict[str, np.ndarray]:
 def _refuse_foreign(path: Path, has: list[str], known: list[str], what: str) -> None:
     """Raise Unfit for the first name that says nothing here: one that is mistyped would be left out."""
     for name in (one for one in has if one not in known):
-        raise Unfit(f"{path} has the {what} '{name}', not known here; {advise(name, known)} Else remove it")
+        told = advise(name, known)
+        end = "" if told.endswith("?") else "."
+        raise Unfit(f"{path} has the {what} '{name}', not known here; {told}{end} Else remove it")
 
 
 def _of_npz(path: Path) -> dict[str, np.ndarray]:

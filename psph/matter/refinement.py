@@ -171,7 +171,7 @@ class Refinement(Kind):
                 yield f"{one.where}.shape: outside the domain, where nothing is; move it into the fluid"
 
     def warnings(self) -> Iterator[str]:
-        """Regions that go with something, and end close to it."""
+        """Regions that go with something, and end close to it or are elsewhere."""
         layout = self.scene.layout
         for one in layout.case.space.refine:
             if not one.moves_with:
@@ -182,6 +182,12 @@ class Refinement(Kind):
             below = [a - b for a, b, end in zip(least, lower, layout.lower) if b > end]
             above = [b - a for a, b, end in zip(most, upper, layout.upper) if b < end]
             near = min(*below, *above, math.inf, math.inf)
+            if any(low > high for low, high in zip(map(max, least, lower), map(min, most, upper))):
+                yield (
+                    f"{one.where}.shape: nowhere near {one.moves_with}, with which it goes; "
+                    "put it around that"
+                )
+                continue
             dx = self.levels.spacing(one.levels - 1)
             if 0.0 <= near < CLEAR * dx:
                 yield (

@@ -24,6 +24,14 @@ FAULTS = {
         replaced("spacing", "Spacings"),
         "space.Spacings: unknown key; did you mean 'spacing'?",
     ),
+    "a table whose name is a part of the right one": (
+        WATER + "[gases.hot]\ndensity = 1.0\n",
+        "gases: unknown key; did you mean 'ideal_gases'?",
+    ),
+    "a number in the place of a table": (
+        replaced("[physics]\n", "[physics]\nself_gravity = 1.0\n"),
+        "physics.self_gravity.softening: missing; add softening = ...",
+    ),
     "a key that resembles none": (
         replaced("end = 2.0", "end = 2.0\nqqq = 1"),
         "time.qqq: unknown key; known here: end, cfl, passes, gather_every, damping_every, halvings, step",

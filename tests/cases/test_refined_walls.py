@@ -241,7 +241,14 @@ def test_a_wall_just_beyond_the_region_of_its_level_follows(tmp_path, monkeypatc
 
 @pytest.mark.parametrize(
     "beside, told",
-    [(0.02, ["space.refine[0].shape: ends 0.02 m beside box, with which it goes"]), (0.15, [])],
+    [
+        (0.02, ["space.refine[0].shape: ends 0.02 m beside box, with which it goes"]),
+        (0.15, []),
+        (
+            -0.45,
+            ["space.refine[0].shape: nowhere near box, with which it goes; put it around that"],
+        ),
+    ],
 )
 def test_a_region_that_ends_close_to_what_it_goes_with_is_warned_of(beside, told, tmp_path):
     case = draft(
