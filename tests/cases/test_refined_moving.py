@@ -231,7 +231,7 @@ def test_a_sphere_in_finer_water_heaves_as_in_fine_water(tmp_path):
     assert np.sqrt((away**2).mean()) < 0.0135
     period, damped = swung(table, "sphere", "centre_z", 0.0, 1.46)
     assert period == pytest.approx(1.46, rel=0.05)
-    assert damped == pytest.approx(0.082, abs=0.03)  # 0.106 and 0.108; fine 0.109, coarse 0.138
+    assert damped == pytest.approx(0.082, abs=0.025)  # 0.106 and 0.108; fine 0.109, coarse 0.138
 
 
 HALF = """
