@@ -16,7 +16,8 @@ from psph.parallel.reductions import largest
 from psph.parallel.slabs import Prices, rebalanced
 from psph.particles import neighbours
 from psph.particles.cells import Grid, make_grid, number_cells, planes_of, sort_by_cell
-from psph.particles.levels import Slab, list_by_levels
+from psph.particles.level_grids import Slab
+from psph.particles.levels import list_by_levels
 from psph.particles.sizes import Sizes
 from psph.particles.store import Store
 

@@ -1,70 +1,79 @@
-"""Particles in the order of the cells that they are in, by the keys of these."""
+"""Particles in the order of levels and of the cells that they are in, by the keys of these."""
+
+from typing import NamedTuple
 
 import numpy as np
 
 from psph.engine.jit import compiled
-from psph.particles.level_ranges import ALL, AXES, BITS
+from psph.particles.level_ranges import ALL, AXES, BITS, FARTHEST
 
 MOST = 4
-"""Cells a particle, of the box around them all, up to which cells are counted; else keys are sorted."""
+"""Cells a particle, of the box around a level, up to which they are counted; else their keys are sorted."""
 
 
-def by_key(key: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Columns, which rise, by their ``key``, and those of one key in their order."""
-    own = key[columns]
-    ends = cell_ends(own)
-    sides = ends[1] - ends[0] + 1
-    if np.prod(sides.astype(float)) <= MOST * len(own):
-        found = np.empty(len(own), np.int64)
-        count_cells(own, ends[0], sides, np.zeros(int(sides.prod()) + 1, np.int64), found)
-        return columns[found]
-    # What keeps the order of equals takes five times as long; there are few in a cell.
-    found = np.argsort(own)
-    order_equals(own[found], found)
-    return columns[found]
+class Ordered(NamedTuple):
+    """Particles by level, cell and column: their ``columns`` (n,); the ``keys`` (cells,) of cells that hold
+    any, ``starts`` (cells + 1,) the first of each; ``base`` (levels + 1,) the first cells of levels, and
+    ``box`` (levels, 2, 3) their lowest and highest numbers along each axis."""
+
+    columns: np.ndarray
+    keys: np.ndarray
+    starts: np.ndarray
+    base: np.ndarray
+    box: np.ndarray
+
+
+def in_cells(key: np.ndarray, of: np.ndarray, levels: int) -> Ordered:
+    """All columns, whose cells have such a ``key`` (n,), and which are ``of`` one (n,) of so many levels."""
+    ends = np.zeros((levels, 2, AXES), np.int64)
+    ends[:, 0] = ALL
+    find_ends(key, of, ends)
+    sides = ends[:, 1] - ends[:, 0] + 1
+    rooms, number = sides.prod(axis=1, dtype=float), np.empty(len(key), np.int64)
+    sparse = rooms > MOST * np.bincount(of, minlength=levels)
+    for level in np.flatnonzero(sparse):
+        those = np.flatnonzero(of == level)
+        cells, number[those] = np.unique(key[those], return_inverse=True)
+        rooms[level] = len(cells)
+    first = np.append(0, np.cumsum(rooms.astype(np.int64)))
+    number_in_boxes(key, of, ends[:, 0], sides, sparse, first, number)
+    starts, columns = np.zeros(first[-1] + 1, np.int64), np.empty(len(key), np.int64)
+    count_cells(number, starts, columns)
+    held = np.flatnonzero(np.diff(starts, prepend=0))
+    begun = np.append(0, starts[held])
+    return Ordered(columns, key[columns[begun[:-1]]], begun, np.searchsorted(held, first), ends - FARTHEST)
 
 
 @compiled
-def cell_ends(key):
-    """The lowest and the highest number of a cell along each axis (2, 3)."""
-    found = np.zeros((2, AXES), np.int64)
-    found[0] = ALL
+def find_ends(key, of, ends):
+    """The lowest and the highest number of a cell along each axis, of each level (levels, 2, 3)."""
     for k in range(len(key)):
         for a in range(AXES):
             cell = key[k] >> BITS * (AXES - 1 - a) & ALL
-            found[0, a], found[1, a] = min(found[0, a], cell), max(found[1, a], cell)
-    return found
+            ends[of[k], 0, a], ends[of[k], 1, a] = min(ends[of[k], 0, a], cell), max(ends[of[k], 1, a], cell)
 
 
 @compiled
-def cell_in_box(key, low, sides):
-    """The number of a cell in a box of cells with so many along its ``sides`` (3,), from ``low`` (3,) on."""
-    found = 0
-    for a in range(AXES):
-        found = found * sides[a] + (key >> BITS * (AXES - 1 - a) & ALL) - low[a]
-    return found
-
-
-@compiled
-def count_cells(key, low, sides, starts, found):
-    """Write to ``found`` the order of entries by their ``key``, equals as they come; ``starts`` (cells + 1,)
-    has zeros."""
+def number_in_boxes(key, of, low, sides, sparse, first, number):
+    """The ``number`` of each particle's cell (n,): from the ``first`` of its level on, in a box of cells with
+    so many along its ``sides`` (levels, 3) from ``low`` (levels, 3) on; where a level is ``sparse`` each has
+    one there already."""
     for k in range(len(key)):
-        starts[cell_in_box(key[k], low, sides) + 1] += 1
+        level, found = of[k], np.int64(0)
+        for a in range(AXES):
+            cell = key[k] >> BITS * (AXES - 1 - a) & ALL
+            found = found * sides[level, a] + cell - low[level, a]
+        number[k] = first[level] + (number[k] if sparse[level] else found)
+
+
+@compiled
+def count_cells(number, starts, columns):
+    """Write columns in the order of the ``number`` of their cells, those of one as they come; ``starts``
+    (cells + 1,), zeros at first, become where each cell ends."""
+    for k in range(len(number)):
+        starts[number[k] + 1] += 1
     for cell in range(1, len(starts)):
         starts[cell] += starts[cell - 1]
-    for k in range(len(key)):
-        cell = cell_in_box(key[k], low, sides)
-        found[starts[cell]] = k
-        starts[cell] += 1
-
-
-@compiled
-def order_equals(key, found):
-    """Let the entries of ``found`` rise where their ``key``, in order, is the same."""
-    for k in range(1, len(key)):
-        own, m = found[k], k
-        while m > 0 and key[m - 1] == key[k] and found[m - 1] > own:
-            found[m] = found[m - 1]
-            m -= 1
-        found[m] = own
+    for k in range(len(number)):
+        columns[starts[number[k]]] = k
+        starts[number[k]] += 1

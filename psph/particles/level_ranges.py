@@ -40,17 +40,19 @@ def lower_bound(keys, first, last, key):
 
 
 @register_jitable
-def along_axis(low, high, far, inverse, count):
+def along_axis(low, high, far, inverse, count, lowest, highest):
     """The first and last cell of an axis between ``far`` before ``low`` and ``far`` behind ``high``, m from
-    its origin, and after how many it goes round; beyond its ends where that is after ``count`` cells, or all
-    of them, and −1."""
+    its origin, and after how many it goes round; from the ``lowest`` to the ``highest`` where it does not,
+    beyond its ends where that is after ``count`` cells, or all of them, and −1."""
     first, last = (low - far) * inverse, (high + far) * inverse
     # Comparisons that no NaN passes: it must not become a number of a cell.
     first = np.int64(np.floor(first)) if first > -FARTHEST else -FARTHEST
     last = np.int64(np.floor(last)) if last < FARTHEST else FARTHEST
     if count > 0 and last - first >= count:
         return np.int64(0), np.int64(count - 1), np.int64(-1)
-    return min(first, FARTHEST), max(last, -FARTHEST), np.int64(count)
+    if count > 0:
+        return min(first, FARTHEST), max(last, -FARTHEST), np.int64(count)
+    return max(first, lowest), min(last, highest), np.int64(count)
 
 
 @inside
@@ -92,14 +94,18 @@ def candidates(grids, low, high, reach, levels, ranges):
     for level in range(levels[0], levels[1]):
         n, per, box = grids.counts[level], grids.inverse[level], grids.box[level]
         far = max(reach, grids.reach[level]) * WIDER
-        first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0])
+        first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0], box[0, 0], box[1, 0])
         place = grids.base[level]
         for c0 in range(first0, last0 + 1):
             row0 = around(c0, n[0])
             if not box[0, 0] <= row0 <= box[1, 0]:
                 continue
             left2 = far * far - gap(low[0], high[0], c0, per[0], n0) ** 2
-            first1, last1, n1 = along_axis(low[1], high[1], np.sqrt(max(left2, 0.0)), per[1], n[1])
+            if left2 < 0.0:
+                continue
+            first1, last1, n1 = along_axis(
+                low[1], high[1], np.sqrt(left2), per[1], n[1], box[0, 1], box[1, 1]
+            )
             for c1 in range(first1, last1 + 1):
                 row1 = around(c1, n[1])
                 if not box[0, 1] <= row1 <= box[1, 1]:
@@ -107,7 +113,9 @@ def candidates(grids, low, high, reach, levels, ranges):
                 rest2 = left2 - gap(low[1], high[1], c1, per[1], n1) ** 2
                 if rest2 < 0.0:
                     continue
-                first2, last2, _ = along_axis(low[2], high[2], np.sqrt(rest2), per[2], n[2])
+                first2, last2, _ = along_axis(
+                    low[2], high[2], np.sqrt(rest2), per[2], n[2], box[0, 2], box[1, 2]
+                )
                 line = ((row0 + FARTHEST) << 2 * BITS) + ((row1 + FARTHEST) << BITS)
                 c2 = first2
                 while c2 <= last2:

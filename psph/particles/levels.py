@@ -6,24 +6,18 @@ number of candidates for each neighbour does not grow with the ratio of sizes.  
 and cells: a row has its neighbours by level, cell and column, the same order on any rank.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from psph.engine.jit import inside, uncounted
 from psph.engine.threads import in_rooms, threads
-from psph.particles.cell_order import by_key
 from psph.particles.lanes import LANES
 from psph.particles.level_candidates import Gathered, append_row, box_around, gather, room_for
-from psph.particles.level_ranges import ALL, AXES, BITS, FARTHEST, WIDER, candidates, extent, of_level
+from psph.particles.level_grids import Slab, grids_of
+from psph.particles.level_ranges import ALL, AXES, BITS, FARTHEST, candidates, extent, of_level
 from psph.particles.level_rows import OwnedRows, Sought, finds, holds_sought, looks, owns
 from psph.particles.neighbours import Neighbours, empty, entries_for
 from psph.particles.sizes import ROUNDED, Sizes
 from psph.particles.store import SPARE
-
-CELLS_A_REACH = {1: 1.0, 2: 1.0, 3: 1.25}
-"""By dimension, how many cells are as wide as the particles of a level reach at the most: of 0.75, 1, 1.25
-and 1.5 the quickest."""
 
 SURPLUS = 8
 """Part of the entries for which there is room besides where there was too little: lists of a gas grow on."""
@@ -33,50 +27,6 @@ GROUPS = 512
 
 SOME = 40
 """Entries of a row for which there is room at first; the guess need not be right."""
-
-
-class Slab(NamedTuple):
-    """The slab of a rank along ``axis``: its ``lower`` and ``upper`` edge, m; ``low`` ghosts, ``owned``
-    particles and ``high`` ghosts in its columns; the ``periods`` in m, None for an open axis; the lower
-    corner of the domain, ``origin`` (dim,), and the largest reach of all particles, ``cutoff``, m."""
-
-    axis: int
-    lower: float
-    upper: float
-    low: int
-    owned: int
-    high: int
-    periods: tuple
-    origin: tuple
-    cutoff: float
-
-
-class Grids(NamedTuple):
-    """The grids of all levels, one after the other.
-
-    ``columns`` (n,) are those of the particles by level, cell and column; ``seen`` (3, n) where they are seen
-    from the slab, m, ``position`` the components of where they are, m, and ``within2`` (n,) the squares of
-    how far they reach, m².  ``keys`` (cells,) are the cells that hold particles, ``starts`` (cells + 1,) the
-    first of each, and ``base`` (levels + 1,) the first cells of levels.  ``inverse`` (levels, 3) is how many
-    cells a metre has from the ``origin`` (3,) on; ``counts`` (levels, 3) after how many cells an axis goes
-    round, 0 where it does not.  ``box`` (levels, 2, 3) are the lowest and the highest cells of each level
-    along each axis, ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.  Behind the last of
-    ``columns``, ``position`` and ``within2`` there is a register to be read.
-    """
-
-    columns: np.ndarray
-    seen: np.ndarray
-    position: tuple
-    within2: np.ndarray
-    keys: np.ndarray
-    starts: np.ndarray
-    base: np.ndarray
-    inverse: np.ndarray
-    origin: np.ndarray
-    counts: np.ndarray
-    box: np.ndarray
-    reach: np.ndarray
-    periods: tuple
 
 
 def list_by_levels(
@@ -111,83 +61,6 @@ def list_by_levels(
         most = max(most, *(-2 * n for n in needed))
         if max(needed) > 0:
             room = room._replace(lists=entries_for(max(needed) + max(needed) // SURPLUS))
-
-
-def grids_of(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids:
-    """The levels of particles at these places."""
-    first = AXES - len(position)
-    level = np.floor(np.log2(slab.cutoff * WIDER / reach)).astype(np.int64)
-    lowest = level.min()
-    there = np.bincount(level - lowest) > 0
-    levels, of = lowest + np.flatnonzero(there), (np.cumsum(there) - 1)[level - lowest]
-    counts, inverse = np.zeros((len(levels), AXES), np.int64), np.zeros((len(levels), AXES))
-    origin, key, moved = np.zeros(AXES), np.zeros(len(reach), np.int64), None
-    for a in range(first):
-        key |= FARTHEST << BITS * (AXES - 1 - a)
-    for d, (x, period) in enumerate(zip(position, slab.periods)):
-        a, wide = first + d, slab.cutoff * 0.5**levels / CELLS_A_REACH[len(position)]
-        origin[a] = slab.origin[d]
-        if period:
-            counts[:, a] = np.ceil(period / wide)  # narrower: no two images of one are candidates
-        inverse[:, a] = counts[:, a] / period if period else 1.0 / wide
-        # A number where the place is none: it must become that of some cell.
-        cell = np.fmin(np.fmax((x - origin[a]) * inverse[:, a][of], -FARTHEST), FARTHEST)
-        cell = np.floor(cell).astype(np.int64)
-        if period:
-            cell = np.clip(cell, 0, counts[:, a][of] - 1)
-        if period and d == slab.axis:
-            beyond = _beyond(x, period, slab)
-            cell += beyond * counts[:, a][of]
-            moved = beyond * period
-            counts[:, a] = 0  # ghosts stand where they are seen: it does not go round
-        cell = np.clip(cell, -FARTHEST, FARTHEST)
-        key |= (cell + FARTHEST) << BITS * (AXES - 1 - a)
-    order = np.concatenate([by_key(key, np.flatnonzero(of == n)) for n in range(len(levels))])
-    key, of, reach = key[order], of[order], reach[order]
-    starts = np.flatnonzero(np.concatenate([[True], (np.diff(key) != 0) | (np.diff(of) != 0)]))
-    base, position = np.searchsorted(of[starts], np.arange(len(levels) + 1)), [x[order] for x in position]
-    seen = np.zeros((AXES, len(order)))
-    seen[first:] = position
-    if moved is not None:
-        seen[first + slab.axis] += moved[order]
-    return Grids(
-        _padded(order.astype(np.uint32)),
-        seen,
-        tuple(map(_padded, position)),
-        _padded(reach**2),
-        key[starts],
-        np.append(starts, len(order)),
-        base,
-        inverse,
-        origin,
-        counts,
-        _boxes(key[starts], base[:-1]),
-        np.maximum.reduceat(reach, starts[base[:-1]]),
-        tuple(slab.periods),
-    )
-
-
-def _boxes(keys: np.ndarray, base: np.ndarray) -> np.ndarray:
-    """The lowest and the highest cells (levels, 2, 3), along each axis, of levels whose first is ``base``."""
-    found = np.zeros((len(base), 2, AXES), np.int64)
-    for a in range(AXES):
-        cells = (keys >> BITS * (AXES - 1 - a) & ALL) - FARTHEST
-        found[:, 0, a], found[:, 1, a] = np.minimum.reduceat(cells, base), np.maximum.reduceat(cells, base)
-    return found
-
-
-def _beyond(x: np.ndarray, period: float, slab: Slab) -> np.ndarray:
-    """By how many periods each column is seen beyond its place: 0 but for ghosts."""
-    found = np.zeros(len(x), np.int64)
-    sides = (slice(0, slab.low), slab.lower), (slice(len(x) - slab.high, len(x)), slab.upper)
-    for ghosts, edge in sides:
-        found[ghosts] = -np.rint((x[ghosts] - edge) / period)
-    return found
-
-
-def _padded(values: np.ndarray) -> np.ndarray:
-    """Values and as many more as a register reads behind the last."""
-    return np.concatenate([values, np.zeros(LANES, values.dtype)])
 
 
 def work_room(groups: int, dimensions: int) -> tuple:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from psph.particles import levels
-from psph.particles.cell_order import by_key
-from psph.particles.level_ranges import BITS
-from psph.particles.levels import Slab, list_by_levels
+from psph.particles.cell_order import in_cells
+from psph.particles.level_grids import Slab
+from psph.particles.level_ranges import BITS, FARTHEST
+from psph.particles.levels import list_by_levels
 from psph.particles.neighbours import empty
 from psph.particles.sizes import GROWTH, Sizes, TooLarge
 
@@ -72,15 +73,19 @@ def test_too_little_room_is_made_larger(monkeypatch):
 
 
 @pytest.mark.parametrize("apart", [1, 2**40])
-def test_those_of_a_cell_come_in_the_order_of_their_columns(apart):
-    """Sixty in nine cells, side by side, whose particles are counted, or far apart, whose keys are sorted by what
-    does not keep the order of equals."""
+def test_particles_come_by_level_then_cell_then_column(apart):
+    """Two levels of sixty in nine cells each, side by side, which are counted, or in the second far apart,
+    whose keys are sorted by what does not keep the order of equals."""
     rng = np.random.default_rng(3)
-    key = sum(rng.integers(0, 3, 60) << shift for shift in (0, BITS)) * apart
-    columns = np.arange(7, 67)
-    assert by_key(np.concatenate([np.zeros(7, int), key]), columns).tolist() == (
-        columns[np.argsort(key, kind="stable")].tolist()
-    )
+    of = rng.permutation(np.repeat([0, 1], 60))
+    key = sum(rng.integers(0, 3, 120) << shift for shift in (0, BITS)) * np.where(of > 0, apart, 1)
+    found = in_cells(key, of, 2)
+    assert found.columns.tolist() == np.lexsort((key, of)).tolist()
+    assert found.base.tolist() == [0, 9, 18]
+    in_each = [(of[k], key[k]) for k in found.columns[found.starts[:-1]]]
+    assert in_each == sorted({(n, k) for n, k in zip(of, key)})
+    assert found.keys.tolist() == [k for _, k in in_each]
+    assert found.box[0, :, 1:].tolist() == [[-FARTHEST] * 2, [2 - FARTHEST] * 2]
 
 
 def test_a_cell_ends_with_its_level():

@@ -18,6 +18,7 @@ from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.reductions import alone
 from psph.particles import levels, neighbours
 from psph.particles.level_candidates import box_around, gather
+from psph.particles.level_grids import Slab, grids_of
 from psph.particles.level_ranges import candidates, extent, of_level
 from psph.particles.levels import middle_of
 from psph.particles.neighbours import empty
@@ -96,7 +97,7 @@ def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Co
     x, spacing = nests(dimensions, ratio, side)
     length, n = SMOOTHING * spacing, x.shape[1]
     reach = SIZES.reach(length)
-    slab = levels.Slab(0, -0.5, 0.5, 0, n, 0, (None,) * dimensions, (-0.5,) * dimensions, float(reach.max()))
+    slab = Slab(0, -0.5, 0.5, 0, n, 0, (None,) * dimensions, (-0.5,) * dimensions, float(reach.max()))
     rows, room = tuple(x), empty(0, 0)
 
     def by_levels():
@@ -107,7 +108,7 @@ def cost(dimensions: int, ratio: float, side: int, repeats: int = REPEATS) -> Co
     by_levels()  # compiled, and with room
     entries = int(room.lengths[:n].sum())
     tree = quickest(repeats, lambda: cKDTree(x.T).query_ball_point(x.T, reach, return_sorted=False))
-    grids = levels.grids_of(list(rows), reach, slab)
+    grids = grids_of(list(rows), reach, slab)
     return Cost(
         count_candidates(grids, *levels.work_room(MANY, dimensions)) / entries,
         quickest(repeats, by_levels) / entries,
