@@ -176,6 +176,11 @@ class Kind:
         return True
 
     @property
+    def keeps_heat(self) -> bool:
+        """Whether what friction takes from motion is in the books of a scene with it, whose sum stays."""
+        return False
+
+    @property
     def bears_held(self) -> bool:
         """Whether rates of friction may serve for several steps beside it."""
         return True

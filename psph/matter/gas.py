@@ -65,6 +65,8 @@ class IdealGases(Kind):
         moved = any(plane.motion for plane in self.scene.layout.mirror_planes)
         return not moved and not sides_of(self.scene.layout, self.parts)
 
+    keeps_heat = True
+
     may_save = (LENGTH, HEAT, SOUND, SHARE)
     is_stiff = False
 

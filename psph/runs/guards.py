@@ -53,6 +53,7 @@ class Guards:
         bears_none = any(hasattr(effect, "bearing_density") for effect in simulation.plan.effects)
         self._slack = bears_none & (np.arange(len(materials.law_of)) >= materials.free)
         self._books = not unbooked and all(kind.keeps_energy for kind in simulation.plan.matter)
+        self._keeps_heat = self._books and any(kind.keeps_heat for kind in simulation.plan.matter)
         self._walls = [(WallRegion(scene), None)]
         self._walls += [(WallRegion(scene, one), row) for row, one in enumerate(materials.rigid)]
         self._levels = np.array([one.level for one in materials.species])
@@ -96,6 +97,10 @@ class Guards:
             )
         for kind in self.simulation.engine.kinds:
             yield from kind.passed()
+        if self._keeps_heat:
+            won, first = self._gain() * self._unit, abs(self.simulation.energy_at_start)
+            part = f", {won / first:.2g} of what there was" if first else ""
+            yield f"energy has changed by {won:.2g} J{part}"
         if self.scene.layout.parts.walls:
             for kind in self.simulation.engine.kinds:
                 yield from kind.summary(self.simulation.engine.poses, *self._around)

@@ -27,7 +27,9 @@ DIGITS = 19
 def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[str]:
     """Frames and tables of a scene whose particles have so many ``neighbours``, in ``steps``."""
     out, particles = scene.case.output, count_of(scene)
-    yield "Output, at most once a step"
+    longer = 2**scene.case.time.halvings
+    wait = f" of all, which is up to {longer} times the shortest: there may be fewer" if longer > 1 else ""
+    yield f"Output, at most once a step{wait}"
     frames, each = _moments(scene, out.frames, steps), bytes_per_frame(scene, plan)
     yield f"  frames              {frames:,}, {amount(each)} each, {amount(frames * each)} in all"
     yield f"  log.csv             {_moments(scene, out.log, steps):,} rows"

@@ -80,5 +80,7 @@ def test_a_dense_square_keeps_its_corners_as_it_does_not_without_conduction(tmp_
     """At rest: exactly nothing moves.  Density smoothed over a contact acts as a surface tension."""
     kept, speed = corners(tmp_path)
     assert abs(kept - 1.0) < 0.05 and speed < 0.07
+    kept, speed = corners(tmp_path, "physics.heat_conduction=0.65")  # 0.4 to 0.75: 0.047 to 0.049
+    assert abs(kept - 1.0) < 0.05 and speed < 0.05
     rounded, _ = corners(tmp_path, "physics.heat_conduction=off")
     assert rounded < 0.9

@@ -91,6 +91,25 @@ def test_cold_gases_that_meet_are_four_times_as_dense(tmp_path):
     assert abs(drift) < 1e-3
 
 
+def test_errors_behind_meeting_gases_are_as_small_as_others_have_them(tmp_path):
+    """Noh by 100 particles a side: means, over space, of the errors of ρ, p, v and u; a Riemann scheme has 0.054,
+    0.018, 0.024 and 0.011."""
+    start_by = 'pressure = 1e-6\nvelocity = ["-1 if x > 0 else 1"]'
+    simulation, _ = at_end(tmp_path, 0.6, spacing=0.01, gamma=5.0 / 3.0, start_by=start_by)
+    x, rho, p, v, u = along(simulation, "density", "pressure", "velocity", "thermal_energy")
+    behind, space = np.abs(x) < 0.2, 1.0 / rho
+    found = [
+        np.average(np.abs(value - np.where(behind, inside, before)), weights=space)
+        for value, inside, before in (
+            (rho, 4.0, 1.0),
+            (p, 4.0 / 3.0, 1e-6),
+            (np.abs(v[:, 0]), 0.0, 1.0),
+            (u, 0.5, 1.5e-6),
+        )
+    ]
+    assert np.all(np.array(found) < [0.1, 0.022, 0.02, 0.013])  # 0.089, 0.020, 0.018, 0.012
+
+
 EIGHTH = "lower = [0.0, 0.0, 0.0]\nupper = [1.0, 1.0, 1.0]\nsymmetry = ['x.lower', 'y.lower', 'z.lower']"
 
 
