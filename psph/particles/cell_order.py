@@ -14,13 +14,19 @@ MOST = 4
 class Ordered(NamedTuple):
     """Particles by level, cell and column: their ``columns`` (n,); the ``keys`` (cells,) of cells that hold
     any, ``starts`` (cells + 1,) the first of each; ``base`` (levels + 1,) the first cells of levels, and
-    ``box`` (levels, 2, 3) their lowest and highest numbers along each axis."""
+    ``box`` (levels, 2, 3) their lowest and highest numbers along each axis.
+
+    Where cells of a level were counted they are numbered from ``first`` (levels,) on in its box, one line
+    behind another, and ``begun`` tells how many particles are before each; else ``first`` is −1.
+    """
 
     columns: np.ndarray
     keys: np.ndarray
     starts: np.ndarray
     base: np.ndarray
     box: np.ndarray
+    first: np.ndarray
+    begun: np.ndarray
 
 
 def in_cells(key: np.ndarray, of: np.ndarray, levels: int) -> Ordered:
@@ -37,11 +43,13 @@ def in_cells(key: np.ndarray, of: np.ndarray, levels: int) -> Ordered:
         rooms[level] = len(cells)
     first = np.append(0, np.cumsum(rooms.astype(np.int64)))
     number_in_boxes(key, of, ends[:, 0], sides, sparse, first, number)
-    starts, columns = np.zeros(first[-1] + 1, np.int64), np.empty(len(key), np.int64)
-    count_cells(number, starts, columns)
-    held = np.flatnonzero(np.diff(starts, prepend=0))
-    begun = np.append(0, starts[held])
-    return Ordered(columns, key[columns[begun[:-1]]], begun, np.searchsorted(held, first), ends - FARTHEST)
+    begun, columns = np.zeros(first[-1] + 2, np.int64), np.empty(len(key), np.int64)
+    count_cells(number, begun[1:], columns)
+    begun = begun[:-1]
+    held = np.flatnonzero(np.diff(begun))
+    starts = np.append(begun[held], len(key))
+    keys, base = key[columns[starts[:-1]]], np.searchsorted(held, first)
+    return Ordered(columns, keys, starts, base, ends - FARTHEST, np.where(sparse, -1, first[:-1]), begun)
 
 
 @compiled

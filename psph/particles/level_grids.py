@@ -39,8 +39,9 @@ class Grids(NamedTuple):
     first of each, and ``base`` (levels + 1,) the first cells of levels.  ``inverse`` (levels, 3) is how many
     cells a metre has from the ``origin`` (3,) on; ``counts`` (levels, 3) after how many cells an axis goes
     round, 0 where it does not.  ``box`` (levels, 2, 3) are the lowest and the highest cells of each level
-    along each axis, ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.  Behind the last of
-    ``columns``, ``position`` and ``within2`` there is a register to be read.
+    along each axis, ``first`` (levels,) and ``begun`` their numbers and the particles before each
+    (psph.particles.cell_order), ``reach`` (levels,) the largest in each, m; ``periods`` in m or None.
+    Behind the last of ``columns``, ``position`` and ``within2`` there is a register to be read.
     """
 
     columns: np.ndarray
@@ -54,6 +55,8 @@ class Grids(NamedTuple):
     origin: np.ndarray
     counts: np.ndarray
     box: np.ndarray
+    first: np.ndarray
+    begun: np.ndarray
     reach: np.ndarray
     periods: tuple
 
@@ -85,8 +88,9 @@ def grids_of(position: list[np.ndarray], reach: np.ndarray, slab: Slab) -> Grids
         seen[first + slab.axis] += moved[cells.columns]
     columns = _taken(np.arange(len(reach), dtype=np.uint32), cells.columns)
     farthest = np.maximum.reduceat(within, cells.starts[cells.base[:-1]])
-    told = cells.keys, cells.starts, cells.base, inverse, origin, counts, cells.box, farthest
-    return Grids(columns, seen, tuple(placed), within**2, *told, tuple(slab.periods))
+    held = cells.keys, cells.starts, cells.base, inverse, origin, counts
+    told = cells.box, cells.first, cells.begun, farthest, tuple(slab.periods)
+    return Grids(columns, seen, tuple(placed), within**2, *held, *told)
 
 
 def _levels_of(reach: np.ndarray, cutoff: float) -> tuple[np.ndarray, np.ndarray]:

@@ -116,21 +116,36 @@ def candidates(grids, low, high, reach, levels, ranges):
                 first2, last2, _ = along_axis(
                     low[2], high[2], np.sqrt(rest2), per[2], n[2], box[0, 2], box[1, 2]
                 )
-                line = ((row0 + FARTHEST) << 2 * BITS) + ((row1 + FARTHEST) << BITS)
                 c2 = first2
                 while c2 <= last2:
                     # Where the line goes round there is a second range, from its other end on.
                     here = around(c2, n[2])
                     stop = min(last2 - c2, n[2] - 1 - here) if n[2] > 0 else last2 - c2
-                    key = line + here + FARTHEST
-                    place, close = within(grids, level, place, key, key + stop)
+                    begin, end, place = of_line(grids, level, place, row0, row1, here, here + stop)
                     if many < len(ranges):
-                        ranges[many, 0], ranges[many, 1] = grids.starts[place], grids.starts[close]
-                    many += close > place
-                    held += grids.starts[close] - grids.starts[place] + LANES
-                    place = close
+                        ranges[many, 0], ranges[many, 1] = begin, end
+                    many += end > begin
+                    held += end - begin + LANES
                     c2 += stop + 1
     return many, held
+
+
+@inside
+def of_line(grids, level, place, row0, row1, first, last):
+    """The particles of a level in the cells ``first`` to ``last`` of a line within its box: from which on,
+    and before which; where cells are not numbered they are sought from the cell ``place`` on, and from which
+    on those of the next line are."""
+    box, number = grids.box[level], grids.first[level]
+    if number >= 0:
+        first, last = max(first, box[0, 2]) - box[0, 2], min(last, box[1, 2]) - box[0, 2]
+        line = (row0 - box[0, 0]) * (box[1, 1] - box[0, 1] + 1) + row1 - box[0, 1]
+        number += line * (box[1, 2] - box[0, 2] + 1)
+        if first > last:
+            return np.int64(0), np.int64(0), place
+        return grids.begun[number + first], grids.begun[number + last + 1], place
+    line = ((row0 + FARTHEST) << 2 * BITS) + ((row1 + FARTHEST) << BITS) + FARTHEST
+    found, close = within(grids, level, place, line + first, line + last)
+    return grids.starts[found], grids.starts[close], close
 
 
 @inside

@@ -85,6 +85,8 @@ def test_particles_come_by_level_then_cell_then_column(apart):
     in_each = [(of[k], key[k]) for k in found.columns[found.starts[:-1]]]
     assert in_each == sorted({(n, k) for n, k in zip(of, key)})
     assert found.keys.tolist() == [k for _, k in in_each]
+    assert found.first.tolist() == [0, 9 if apart == 1 else -1]
+    assert found.begun[:10].tolist() == found.starts[:10].tolist()
     assert found.box[0, :, 1:].tolist() == [[-FARTHEST] * 2, [2 - FARTHEST] * 2]
 
 
