@@ -257,13 +257,17 @@ def test_a_wave_through_borders_at_its_nodes_keeps_what_one_spacing_keeps(tmp_pa
 
 
 @LONG
-@pytest.mark.parametrize("off", [0.0, 0.04])
-def test_waves_carry_no_water_out_of_the_finer_part(off, tmp_path, monkeypatch):
-    """Six periods: 1.003 on average of 18 runs, 0.995 to 1.011, by the place of the border and by the order of
-    sums.  The control: whoever sees the end of a margin steps aside too, and dies behind it: 0.972."""
-    assert swung(tmp_path, off, 6)[2] == pytest.approx(1.0, abs=0.015)
+def test_waves_carry_no_water_out_of_the_finer_part(tmp_path, monkeypatch):
+    """Six periods: 1.003 on average of 27 runs, 0.995 to 1.016, by the place of the border and by the order of
+    sums; of three places 1.004 to 1.006.  The control: whoever sees the end of a margin steps aside too, and
+    dies behind it: 0.962 to 0.972."""
+
+    def left():
+        return np.mean([swung(tmp_path, off, 6)[2] for off in (0.0, 0.02, 0.04)])
+
+    assert left() == pytest.approx(1.0, abs=0.01)
     monkeypatch.setattr(levels.Resizing, "_steps_aside", lambda self, where, level: np.ones(len(level)))
-    assert swung(tmp_path, off, 6)[2] < 0.98
+    assert left() < 0.98
 
 
 @LONG

@@ -28,6 +28,9 @@ COUNTED = 8
 FAR = 20.0
 """Smoothing length over the middle one of a particle that stands far from all others."""
 
+UNLIKE = 2.0
+"""The usual distance of particles over ``space.spacing``, or the other way round, that is worth a word."""
+
 BALL = {1: 2.0, 2: math.pi, 3: 4.0 / 3.0 * math.pi}
 """Volume of a ball of 1 m in each dimension."""
 
@@ -125,7 +128,7 @@ class GasPart(Part):
         return np.array([layout.smoothing_length / self.finer])
 
     def stragglers(self, layout: Any) -> Iterator[str]:
-        """A line where a particle stands far from all others."""
+        """A line where a particle stands far from all others, or all are closer than the scene's."""
         yield from ()
 
     def faults(self, layout: Any) -> Iterator[str]:
@@ -199,9 +202,17 @@ class GivenPart(GasPart):
         return layout.begun[self.number][LENGTH.name]
 
     def stragglers(self, layout: Any) -> Iterator[str]:
-        """The one that reaches farthest, where that is much farther than most do."""
+        """The one that reaches farthest, where that is much farther than most do; and how far apart most are,
+        where they are much closer, or farther, than the scene's spacing."""
         lengths = self.guessed(layout)
         k, most = int(lengths.argmax()), float(np.median(lengths))
+        apart = most / layout.smoothing_length
+        if not 1.0 / UNLIKE < apart < UNLIKE:
+            yield (
+                f"{self.key}.file: {self.table.file.file}: its particles are about "
+                f"{apart * layout.spacing:.3g} m apart, and space.spacing is {layout.spacing:g} m; give that, "
+                "or pictures and forecasts are off"
+            )
         if lengths[k] > FAR * most:
             yield (
                 f"{self.key}.file: {self.table.file.file}: row {self.begun.row[k]} stands so far from others "
