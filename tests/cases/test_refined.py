@@ -257,6 +257,7 @@ def test_a_wave_through_borders_at_its_nodes_keeps_what_one_spacing_keeps(tmp_pa
 
 
 @LONG
+@pytest.mark.timeout(900)
 def test_waves_carry_no_water_out_of_the_finer_part(tmp_path, monkeypatch):
     """Six periods: 1.003 on average of 27 runs, 0.995 to 1.016, by the place of the border and by the order of
     sums; of three places 1.004 to 1.006.  The control: whoever sees the end of a margin steps aside too, and

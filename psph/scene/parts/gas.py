@@ -208,10 +208,10 @@ class GivenPart(GasPart):
         k, most = int(lengths.argmax()), float(np.median(lengths))
         apart = most / layout.smoothing_length
         if not 1.0 / UNLIKE < apart < UNLIKE:
+            mean = f"{apart * layout.spacing:.3g} m"
             yield (
-                f"{self.key}.file: {self.table.file.file}: its particles are about "
-                f"{apart * layout.spacing:.3g} m apart, and space.spacing is {layout.spacing:g} m; give that, "
-                "or pictures and forecasts are off"
+                f"{self.key}.file: {self.table.file.file}: its particles are about {mean} apart, and "
+                f"space.spacing is {layout.spacing:g} m; give {mean}, or pictures and forecasts are off"
             )
         if lengths[k] > FAR * most:
             yield (
