@@ -92,6 +92,7 @@ class Record:
                 "processor": processor(),
                 "dimensions": scene.dimensions,
                 "spacing": scene.spacing,
+                "groups": [one.name for one in scene.species],
             },
             saved and saved.frames(),
             simulation.plan.saved,

@@ -67,6 +67,7 @@ def test_frames_and_rows_are_as_many_as_predicted(finished):
     (rows, columns, kib), (probes, looked, pairs) = said(case, "probes.csv")
     assert abs(rows - len(Run(folder).probes()["time"])) <= 1
     assert columns == len(Run(folder).probes()) == 1 + 3 * PROBES
+    assert list(Run(folder).attributes["groups"]) == [one.name for one in Scene(case).species]
     assert 1024 * kib == pytest.approx((folder / "probes.csv").stat().st_size, rel=0.3)
     assert probes == PROBES and 5 * 252 < pairs < 50 * 252
     ranges = chain(*(probe.ranges(simulation) for probe in probes_of(case)))
