@@ -90,11 +90,9 @@ class Profile:
         case, _ = load_to_read(self.run.folder / COPY)
         self._scene, self._center = Scene(case), np.array(center, float)
         self._step = self._scene.spacing if step is None else step
-        if len(self._center) != self._scene.dimensions:
-            d = self._scene.dimensions
-            raise MeasureError(
-                f"measure --profile: {len(self._center)} of the {d} numbers of a place in {d}D"
-            )
+        given, asked = len(self._center), self._scene.dimensions
+        if given != asked:
+            raise MeasureError(f"measure --profile: {given} of the {asked} numbers of a place in {asked}D")
         if not self._step > 0.0:
             raise MeasureError(f"measure --profile: --step {self._step:g}: not above 0; leave it out")
         for name in self.fields:
