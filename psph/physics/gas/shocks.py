@@ -84,7 +84,7 @@ class ShockViscosity(NamedTuple):
 
 
 class KernelViscosity(NamedTuple):
-    """Friction of gas that runs together, as where shocks are; ``kernel`` is that for h = 1 m."""
+    """Friction of gas that runs together, as where shocks are; `kernel` is that for h = 1 m."""
 
     conserves = ShockViscosity.conserves
 
