@@ -80,6 +80,9 @@ class Work:
         it takes beside columns, by what is ``seen`` and where its ``sums`` go; None: that one."""
         return None
 
+    def sums_again(self) -> None:
+        """What sums rest on, once more: at the start they may be done twice (psph.simulation.stages)."""
+
     def after_sums(self, time: float, dt: float) -> None:
         """Forces at ``time``, s, by what the passes have summed."""
 

@@ -202,6 +202,12 @@ class Gases(Work):
         arrays = store.group, self._gamma, heat, store["density"], store["pressure"], store[SOUND.name]
         self._each(find_state, *arrays)
 
+    def sums_again(self) -> None:
+        """The pressure, which the prediction has by density alone; and what ghosts bear."""
+        self.press()
+        if self.steps:
+            self.steps.bring()
+
     def after_sums(self, time: float, dt: float) -> None:
         """The largest of what limits the next step, over all ranks, and the shares of viscosity in it."""
         store, inner = self._store, self._store.inner

@@ -92,6 +92,8 @@ def begin_sums(simulation) -> None:
         predict(simulation)
         simulation.listed = True
         sum_midway(simulation)
+        for kind in simulation.engine.kinds:
+            kind.sums_again()
         sum_over_pairs(simulation)
 
 

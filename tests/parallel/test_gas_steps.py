@@ -31,11 +31,13 @@ jitter = 0.2
 
 
 SWITCHED = BLAST + "[physics]\nshock_viscosity = { alpha = 1.0, beta = 2.0, least = 0.0 }\n"
+CUT = SWITCHED.replace("x - 1.4", "x - 2.1")
+"""Hot where two ranks meet: what those beside bear counts in the first step."""
 EACH = pytest.mark.parametrize("text", [BLAST, SWITCHED], ids=["everywhere", "switched"])
 """The viscosity."""
 
 
-@EACH
+@pytest.mark.parametrize("text", [BLAST, SWITCHED, CUT], ids=["everywhere", "switched", "cut"])
 def test_same_bits_with_steps_of_their_own(text, mpi_tmp_path):
     """A shock wakes gas across the borders of ranks, while lists are made anew."""
     case = written(mpi_tmp_path, text)

@@ -53,6 +53,25 @@ def test_a_gas_knows_how_it_is_compressed_and_turns(tmp_path):
     assert share[deep].max() < 0.31 and share.max() > 0.7
 
 
+def test_a_gas_at_rest_begins_as_without_the_switch(tmp_path):
+    """Nothing rubs where nothing moves.  The first sums are done twice for the switch, and the pressure of a
+    prediction is that of the density alone: with it a blast lost 2 % of its energy in its first step."""
+    rest = [f"ideal_gases.{name}" for name in ("light", "heavy")]
+    calm = (
+        "ideal_gases.light.velocity_gradient=[[0.0, 0.0], [0.0, 0.0]]",
+        "ideal_gases.heavy.velocity=[0.0, 0.0]",
+    )
+    hot = (f"{rest[0]}.pressure=50.0", f"{rest[1]}.pressure=0.2")
+    found = []
+    for sets in ((SWITCHED,), ("time.halvings=2", SWITCHED), ()):
+        found.append(
+            of(start(draft(tmp_path, CLOUD, *calm, *hot, *sets)), "acceleration", "thermal_energy_rate")
+        )
+    for ours in found[:2]:
+        assert all(np.abs(a - b).max() < 1e-12 * np.abs(b).max() for a, b in zip(ours, found[2]))
+    assert np.abs(found[2][0]).max() > 100.0
+
+
 @pytest.mark.mpi(min_size=2)
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
 def test_shares_are_the_same_on_any_ranks_and_after_a_checkpoint(mpi_tmp_path, before, after):
