@@ -32,9 +32,10 @@ from psph.physics.fluid.viscosity import (
     LaplacianFriction,
     PairDamping,
 )
+from psph.physics.gas.conduction import HeatConduction
 from psph.physics.gas.heat import GasHeat
 from psph.physics.gas.pressure import GasPressure
-from psph.physics.gas.shocks import FastestSignal, HeatConduction, ShockViscosity
+from psph.physics.gas.shocks import FastestSignal, ShockViscosity
 from psph.physics.gas.softening import SofteningChange
 from psph.physics.gas.switch import FlowOfGas
 from psph.physics.order.potential import LocalPotential

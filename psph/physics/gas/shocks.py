@@ -1,8 +1,7 @@
-"""What broadens shocks and contacts of an ideal gas: viscosity, and conduction of heat."""
+"""What broadens shocks of an ideal gas: viscosity, and the fastest signal."""
 
 from typing import Annotated, Any, NamedTuple
 
-import numpy as np
 from pydantic import Field
 
 from psph.acts import IDEAL_GASES
@@ -111,29 +110,6 @@ class SwitchedViscosity(NamedTuple):
         """Acceleration, m/s²."""
         nu = share(i, j) * shock_pressure(self.alpha, self.beta, i, j, pair)
         return scale(pair.x_ij, -nu * mean_slope(self.kernel, i, j, pair))
-
-
-class HeatConduction(NamedTuple):
-    """Heat spreads across contacts, where the pressure would have a blip.
-
-    u̇_i = ½ α_u Σ_j m_j v (u_i − u_j) [W′(h_i)/(Ω_i ρ_i) + W′(h_j)/(Ω_j ρ_j)], v = √(|p_i − p_j|/ρ̄).  It keeps
-    the energy of a pair, and acts where pressure is uneven.  Price (2008), J. Comput. Phys. 227, 10040.
-    """
-
-    acts = (IDEAL_GASES,)
-
-    strength: Annotated[
-        float, Field(ge=0, description="coefficient α_u", json_schema_extra={"unit": "1"})
-    ] = 1.0
-
-
-@helper
-def conduction(strength, own, other, i, j, pair):
-    """One neighbour's share of u̇_i by conduction, W/kg; ``own`` and ``other`` are even slopes."""
-    _, volume = approach(i, j, pair)
-    v = np.sqrt(abs(i.pressure - j.pressure) * volume)
-    both = own * i.specific_volume + other * j.specific_volume
-    return 0.5 * strength * v * (i.thermal_energy - j.thermal_energy) * both * pair.r
 
 
 class FastestSignal(NamedTuple):
