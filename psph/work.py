@@ -1,5 +1,6 @@
 """What a kind of matter does on a rank within a step: its stages, and its work at each moment."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, ClassVar, NamedTuple
 
@@ -79,6 +80,10 @@ class Work:
         """Loops in the place of the compiled ``loop`` of the pass ``one`` over all particles, each with what
         it takes beside columns, by what is ``seen`` and where its ``sums`` go; None: that one."""
         return None
+
+    def uneven(self) -> float:
+        """Half of how far velocities of fluids differ, m/s; infinity where that bounds no shifts."""
+        return math.inf
 
     def sums_again(self) -> None:
         """What sums rest on, once more: at the start they may be done twice (psph.simulation.stages)."""

@@ -100,7 +100,8 @@ def begin_sums(simulation) -> None:
 def kick(simulation) -> None:
     """The second kick, with the new rates."""
     # It bounds the shifts of the next step, whose speed is not known yet.
-    simulation.previous_speed = simulation.fluid_speed
+    bounds = [kind.uneven() for kind in simulation.engine.kinds] if simulation.plan.displaces else ()
+    simulation.previous_speed = min([simulation.fluid_speed, *bounds])
     with simulation.ledger("kick"):
         simulation.own_extremes = simulation.engine.kick(
             simulation.then, simulation.dt, simulation.previous_speed
