@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from typing import Literal
 
-from pydantic import PrivateAttr
+from pydantic import PrivateAttr, field_validator
+from pydantic_core import PydanticCustomError
 
 from psph.acts import FLUIDS
 from psph.case.findings import Finding, Location
@@ -33,6 +34,14 @@ class Refined(Table):
     )
 
     _number: int = PrivateAttr(0)
+
+    @field_validator("factor", mode="before")
+    @classmethod
+    def _a_number(cls, value):
+        """Truth would pass for 1."""
+        if isinstance(value, bool | str):
+            raise PydanticCustomError("psph", "not a number; give 1, 2, 4 or 8, without quotes")
+        return value
 
     @property
     def where(self) -> str:
@@ -95,7 +104,8 @@ def _unfit(case) -> Iterator[tuple[Location, str]]:
     if case.frame.motion is not None:
         yield ("frame", "motion"), "frames with levels of sizes rest"
     if case.precision != "double":
-        yield ("precision",), "levels of sizes are in double precision"
+        of_profile = f', which profile = "{case.profile}" brings' if case.profile else ""
+        yield ("precision",), f'levels of sizes are in "double", not in "{case.precision}"{of_profile}'
     if case.physics.self_gravity is not None:
         yield ("physics", "self_gravity"), "it counts on one spacing"
 

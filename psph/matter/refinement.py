@@ -161,7 +161,9 @@ class Refinement(Kind):
         for one in layout.case.space.refine:
             lower, upper = bounds(one.shape)
             thin = min(high - low for low, high in zip(lower, upper))
-            if thin < layout.support:
+            if thin <= 0.0:
+                yield f"{one.where}.shape: nothing is in it: its parts do not meet; move one of them"
+            elif thin < layout.support:
                 yield (
                     f"{one.where}.shape: {thin:.4g} m thick, less than the {layout.support:.4g} m that "
                     "particles around it see; make it thicker, or give a smaller space.spacing to all"
@@ -187,6 +189,9 @@ class Refinement(Kind):
                     f"{one.where}.shape: nowhere near {one.moves_with}, with which it goes; "
                     "put it around that"
                 )
+                continue
+            if all(a <= b for a, b in zip(least, lower)) and all(a >= b for a, b in zip(most, upper)):
+                yield f"{one.where}.shape: all of it is in {one.moves_with}; make it larger, for finer fluid"
                 continue
             dx = self.levels.spacing(one.levels - 1)
             if 0.0 <= near < CLEAR * dx:

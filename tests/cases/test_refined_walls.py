@@ -261,6 +261,14 @@ def test_a_region_that_ends_close_to_what_it_goes_with_is_warned_of(beside, told
     assert [line.partition(": coarse water")[0] for line in warned] == told
 
 
+def test_a_region_inside_of_what_it_goes_with_is_warned_of(tmp_path):
+    region = "space.refine=[{shape={box={lower=[0.8,0.1],upper=[1.2,0.4]}},moves_with='box'}]"
+    body = "bodies.box={shape={box={lower=[0.7,0.1],upper=[1.3,0.5]}},density=500}"
+    kinds = kinds_in(Scene(draft(tmp_path, STILL.replace("FACTOR", "2"), region, body)))
+    [line] = [line for kind in kinds for line in kind.warnings() if "refine" in line]
+    assert "all of it is in box" in line
+
+
 def test_a_region_that_goes_on_to_a_mirror_is_not_warned_of(tmp_path):
     """Half of a body, and of its region, beside a plane of symmetry: nothing comes in there."""
     region = "space.refine=[{shape={box={lower=[0.0,-0.2],upper=[0.8,0.7]}},moves_with='box'}]"
