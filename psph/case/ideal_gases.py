@@ -46,6 +46,8 @@ def _positive(value: Any, validate) -> Any:
     """One message for what is neither a number above 0 nor a formula."""
     if not isinstance(value, (int, float, str)) or isinstance(value, bool):
         raise PydanticCustomError("psph", "neither a number nor a formula; give one of them")
+    if not isinstance(value, str) and math.isnan(value):
+        raise PydanticCustomError("psph", "not a number; give one above 0")
     if not isinstance(value, str) and not value > 0.0:
         raise PydanticCustomError("psph", "a number that must be above 0; give a larger one")
     return validate(value)

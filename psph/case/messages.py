@@ -103,7 +103,7 @@ def _fits_worse(details: Details, loc: Location, located: list[tuple[Details, Lo
 def _how_foreign(details: Details) -> int:
     """0 for a finding about a value of the right kind; the larger, the less the value is what is wanted."""
     kind, value = details["type"], details["input"]
-    if kind not in WANTED and kind != "literal_error":
+    if kind == "finite_number" or kind not in WANTED and kind != "literal_error":
         return 0
     table = kind in ("model_type", "dict_type")
     return 3 if table else 1 if (kind == "literal_error") == isinstance(value, str) else 2

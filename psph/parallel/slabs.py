@@ -69,7 +69,8 @@ def rebalanced(costs: np.ndarray, bounds: np.ndarray | None, ranks: int) -> np.n
     if bounds is not None and ranks > len(costs):
         raise TooManyRanks(
             f"it has come from {bounds[-1]} planes of cells to {len(costs)}, fewer than its {ranks} ranks: "
-            "particles reach farther or draw together; resume it on fewer, from its last checkpoint"
+            "particles reach farther or draw together; resume it on fewer from its last checkpoint, "
+            "or begin on fewer"
         )
     best = partition(costs, ranks)
     if bounds is None or bounds[-1] != len(costs):

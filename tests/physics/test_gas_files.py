@@ -269,6 +269,20 @@ def test_a_spacing_that_is_not_that_of_the_file_is_told(tmp_path):
     assert not check(Scene(draft(tmp_path, CLOUD)))
 
 
+def test_masses_that_differ_ten_thousandfold_are_told(tmp_path):
+    write(tmp_path / "cloud.npz", changed("mass", 7, 1e4))
+    lines = check(Scene(draft(tmp_path, CLOUD)))
+    assert any("the largest in row 8" in line for line in lines)
+
+
+def test_numbers_that_are_none_are_told_once(tmp_path):
+    """Where a formula may stand too."""
+    wrong = "ideal_gases.cloud.pressure=inf", "ideal_gases.cloud.velocity=[nan, 0.0]"
+    write(tmp_path / "cloud.npz", particles())
+    lines = refusal(tmp_path, CLOUD, *wrong)
+    assert len(lines) == 2 and all("is not a finite number" in line for line in lines)
+
+
 def test_particles_outside_the_domain_and_too_few_are_told(tmp_path):
     write(tmp_path / "cloud.npz", changed("position", (4, 0), 1.5))
     with pytest.raises(ValueError, match=r"file: cloud.npz: row 5 is at x = 1.5 m, outside .*; change"):

@@ -28,6 +28,9 @@ COUNTED = 8
 FAR = 20.0
 """Smoothing length over the middle one of a particle that stands far from all others."""
 
+HEAVY = 1e4
+"""The largest over the smallest mass of a file's particles that is worth a word."""
+
 UNLIKE = 2.0
 """The usual distance of particles over ``space.spacing``, or the other way round, that is worth a word."""
 
@@ -212,6 +215,13 @@ class GivenPart(GasPart):
             yield (
                 f"{self.key}.file: {self.table.file.file}: its particles are about {mean} apart, and "
                 f"space.spacing is {layout.spacing:g} m; give {mean}, or pictures and forecasts are off"
+            )
+        mass = self.begun.mass
+        if mass.max() > HEAVY * mass.min():
+            row, ends = self.begun.row[int(mass.argmax())], f"{mass.min():.3g} to {mass.max():.3g} kg"
+            yield (
+                f"{self.key}.file: {self.table.file.file}: masses from {ends}, the largest in row {row}: "
+                "light particles beside heavy ones are thrown about; make them more alike"
             )
         if lengths[k] > FAR * most:
             yield (
