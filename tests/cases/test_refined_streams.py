@@ -51,3 +51,30 @@ def test_shifts_as_large_as_the_stream_is_fast_stir_it(tmp_path, monkeypatch):
     monkeypatch.setattr(levels.Resizing, "uneven", lambda self: math.inf)
     speed, across = streamed(tmp_path, 2.0)
     assert across > 0.005 and speed < 0.298
+
+
+ALONG = """
+time.end = 1.2
+[space]
+dimensions = 2
+spacing = 0.04
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.2, 0.8]
+refine = [{ shape.box = { lower = [0.5, BELOW], upper = [0.8, 0.5] } }]
+[physics]
+sound_speed = 12.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.2, 0.8] }
+velocity = [1.0, 0.0]
+"""
+"""A stream of all water, along borders on rows of coarse particles or between them."""
+
+
+@pytest.mark.parametrize("below", [0.3, 0.31, 0.32])
+def test_mass_that_leads_of_a_stream_along_a_border_is_exact(tmp_path, below):
+    """Shifts as large as the stream is fast had the coarse row on a border, or its finer ones, lead twice: 2 %."""
+    simulation = start(draft(tmp_path, ALONG.replace("BELOW", f"{below:g}")))
+    while simulation.time < 1.2:
+        simulation.step(1.2)
+        assert leading(simulation)[3].sum() == pytest.approx(960.0, rel=1e-9)
