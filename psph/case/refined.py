@@ -105,7 +105,7 @@ def _unfit(case) -> Iterator[tuple[Location, str]]:
         yield ("frame", "motion"), "frames with levels of sizes rest"
     if case.precision != "double":
         of_profile = f', which profile = "{case.profile}" brings' if case.profile else ""
-        yield ("precision",), f'levels of sizes are in "double", not in "{case.precision}"{of_profile}'
+        yield ("precision",), f'levels of sizes are in double precision, not "{case.precision}"{of_profile}'
     if case.physics.self_gravity is not None:
         yield ("physics", "self_gravity"), "it counts on one spacing"
 

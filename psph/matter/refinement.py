@@ -8,6 +8,7 @@ import numpy as np
 from psph.fields import Field
 from psph.kinds import Created, Kind, count_of
 from psph.particles.sizes import Sizes
+from psph.scene.forms.make import form_of
 from psph.scene.levels import CORNER, DIVIDED, LENGTH, SHARE, SLOPE, Levels
 from psph.scene.particles import settled_at
 from psph.scene.parts.level import LevelPart, LevelWall
@@ -27,6 +28,9 @@ LEAST_SKIN = 0.06
 DEAR = {1: 10.0, 2: 10.0, 3: 5.0}
 """By dimensions, time of new lists, and of whom to follow by them, over that of a step's pairs: by it the dam
 break in 2D keeps 0.3, and a sphere that heaves in 3D, where by 10 a step took 51 ms for 45, gets 0.12."""
+
+LOOKED_AT = 16
+"""Points along each axis of a region at which it is looked for."""
 
 CLEAR = 2.0
 """Coarse spacings between a region's ends and what it goes with, below which `check` warns: a body of four
@@ -168,6 +172,8 @@ class Refinement(Kind):
                     f"{one.where}.shape: {thin:.4g} m thick, less than the {layout.support:.4g} m that "
                     "particles around it see; make it thicker, or give a smaller space.spacing to all"
                 )
+            elif _is_empty(form_of(one.shape), np.array(lower), np.array(upper)):
+                yield f"{one.where}.shape: nothing is in it; leave out less"
             ends = zip(lower, upper, layout.lower, layout.upper)
             if any(high <= least or low >= most for low, high, least, most in ends):
                 yield f"{one.where}.shape: outside the domain, where nothing is; move it into the fluid"
@@ -227,6 +233,15 @@ class Refinement(Kind):
         layout = self.scene.layout
         own = [part.number for part in layout.parts if part.level == level]
         return sum(len(layout.placed[number]) for number in own if number in layout.placed)
+
+
+def _is_empty(form, lower: np.ndarray, upper: np.ndarray) -> bool:
+    """Whether a ``form`` holds no point of the box from ``lower`` to ``upper``, m: of points in it all are
+    farther from the form than from where the next ones look."""
+    width = (upper - lower) / LOOKED_AT
+    sides = [low + w * (np.arange(LOOKED_AT) + 0.5) for low, w in zip(lower, width)]
+    points = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, len(sides))
+    return bool(form.away(points).min() > 0.5 * np.sqrt((width**2).sum()))
 
 
 def _work(simulation):

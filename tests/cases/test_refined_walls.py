@@ -261,6 +261,22 @@ def test_a_region_that_ends_close_to_what_it_goes_with_is_warned_of(beside, told
     assert [line.partition(": coarse water")[0] for line in warned] == told
 
 
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "{intersection=[{box={lower=[0.5,0.0],upper=[0.9,0.4]}},{box={lower=[1.1,0.0],upper=[1.5,0.4]}}]}",
+        "{difference={from={box={lower=[0.5,0.0],upper=[1.5,0.4]}},"
+        "minus=[{box={lower=[0.2,-0.3],upper=[1.8,0.7]}}]}}",
+    ],
+)
+def test_a_region_with_nothing_in_it_is_refused(tmp_path, shape):
+    kinds = kinds_in(
+        Scene(draft(tmp_path, STILL.replace("FACTOR", "2"), f"space.refine=[{{shape={shape}}}]"))
+    )
+    [line] = [line for kind in kinds for line in kind.faults()]
+    assert "space.refine[0].shape: nothing is in it" in line
+
+
 def test_a_region_inside_of_what_it_goes_with_is_warned_of(tmp_path):
     region = "space.refine=[{shape={box={lower=[0.8,0.1],upper=[1.2,0.4]}},moves_with='box'}]"
     body = "bodies.box={shape={box={lower=[0.7,0.1],upper=[1.3,0.5]}},density=500}"

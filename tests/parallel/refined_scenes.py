@@ -16,6 +16,7 @@ FAMILIES = {
         "condition": "extrapolated",
     },
     "with a body, beside a mirror": {"body": True, "mirrors": ["y.lower"], "factors": (2, 4)},
+    "in a stream that goes round": {"stream": 1.0},
 }
 
 
@@ -53,6 +54,12 @@ def scene(family: dict, seed: int) -> str:
         case["space"]["symmetry"] = mirrors
     if "front" in family:
         region["front"] = family["front"]
+    if "stream" in family:
+        case["space"] |= {"periodic": ["x"], "lower": [0.0, -thick], "upper": [long, high]}
+        water["box"]["upper"][0] = long
+        case["fluids"]["water"]["velocity"] = [family["stream"], 0.0]
+        case["physics"]["gravity"][0] = 0.0
+        case["walls"]["tank"]["shape"] = {"box": {"lower": [0.0, -thick], "upper": [long, 0.0]}}
     if "body" in family:
         region["moves_with"] = "float"
         body = {"box": _around(middle, (2, 2))}

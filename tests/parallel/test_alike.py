@@ -57,7 +57,7 @@ def test_gases_of_many_sizes_have_the_same_bits_however_they_are_run(name, tmp_p
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("name", long_but_for((), refined_scenes.FAMILIES))
 def test_finer_regions_have_the_same_bits_however_they_are_run(name, tmp_path):
-    """Coarse and fine ones with steps of their own; regions that rest, go with a front or with a body."""
+    """Coarse and fine ones with steps of their own; regions that rest, in a stream too, go with a front or with a body."""
     for seed in range(2):
         (tmp_path / f"{seed}.toml").write_text(refined_scenes.scene(refined_scenes.FAMILIES[name], seed))
     all_alike(told(tmp_path, 20), 2)
