@@ -232,7 +232,8 @@ def test_a_sphere_in_finer_water_heaves_as_in_fine_water(tmp_path):
     assert np.sqrt((away**2).mean()) < 0.0135
     period, damped = swung(table, "sphere", "centre_z", 0.0, 1.46)
     assert period == pytest.approx(1.46, rel=0.05)
-    assert damped == pytest.approx(0.109, abs=0.01)
+    assert damped == pytest.approx(0.109, abs=0.01)  # as in fine water
+    assert damped == pytest.approx(0.082, abs=0.025)  # by theory, which fine water misses too
 
 
 HALF = """
