@@ -30,7 +30,7 @@ DEAR = {1: 10.0, 2: 10.0, 3: 5.0}
 break in 2D keeps 0.3, and a sphere that heaves in 3D, where by 10 a step took 51 ms for 45, gets 0.12."""
 
 LOOKED_AT = 16
-"""Points along each axis of a region at which it is looked for."""
+"""Sample points along each axis of a region's box, by which an empty region is found."""
 
 CLEAR = 2.0
 """Coarse spacings between a region's ends and what it goes with, below which `check` warns: a body of four
@@ -236,8 +236,8 @@ class Refinement(Kind):
 
 
 def _is_empty(form, lower: np.ndarray, upper: np.ndarray) -> bool:
-    """Whether a ``form`` holds no point of the box from ``lower`` to ``upper``, m: of points in it all are
-    farther from the form than from where the next ones look."""
+    """Whether a ``form`` has no inside: of samples of its box from ``lower`` to ``upper``, m, each is farther
+    from the form than half the diagonal between samples."""
     width = (upper - lower) / LOOKED_AT
     sides = [low + w * (np.arange(LOOKED_AT) + 0.5) for low, w in zip(lower, width)]
     points = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, len(sides))

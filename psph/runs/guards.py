@@ -99,7 +99,7 @@ class Guards:
             yield from kind.passed()
         if self._keeps_heat:
             won, first = self._gain() * self._unit, abs(self.simulation.energy_at_start)
-            part = f", {won / first:.2g} of what there was" if first else ""
+            part = f", {won / first:.2g} of the energy at the start" if first else ""
             yield f"energy has changed by {won:.2g} J{part}"
         if self.scene.layout.parts.walls:
             for kind in self.simulation.engine.kinds:

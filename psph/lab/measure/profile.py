@@ -92,7 +92,7 @@ class Profile:
         self._step = self._scene.spacing if step is None else step
         given, asked = len(self._center), self._scene.dimensions
         if given != asked:
-            raise MeasureError(f"measure --profile: {given} of the {asked} numbers of a place in {asked}D")
+            raise MeasureError(f"measure --profile: {given} given; a place in {asked}D has {asked} numbers")
         if not self._step > 0.0:
             raise MeasureError(f"measure --profile: --step {self._step:g}: not above 0; leave it out")
         for name in self.fields:

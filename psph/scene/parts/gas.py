@@ -131,7 +131,7 @@ class GasPart(Part):
         return np.array([layout.smoothing_length / self.finer])
 
     def stragglers(self, layout: Any) -> Iterator[str]:
-        """A line where a particle stands far from all others, or all are closer than the scene's."""
+        """Lines on a particle far from all others, on spacings and on masses that differ much."""
         yield from ()
 
     def faults(self, layout: Any) -> Iterator[str]:
@@ -205,8 +205,8 @@ class GivenPart(GasPart):
         return layout.begun[self.number][LENGTH.name]
 
     def stragglers(self, layout: Any) -> Iterator[str]:
-        """The one that reaches farthest, where that is much farther than most do; and how far apart most are,
-        where they are much closer, or farther, than the scene's spacing."""
+        """The particle that reaches much farther than most; a usual distance unlike the scene's spacing; and
+        masses that differ much."""
         lengths = self.guessed(layout)
         k, most = int(lengths.argmax()), float(np.median(lengths))
         apart = most / layout.smoothing_length

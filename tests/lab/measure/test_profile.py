@@ -55,7 +55,7 @@ def test_what_cannot_be_a_profile_is_refused(tmp_path):
     folder = tmp_path / "run"
     run(draft(tmp_path, TANK, "time.end=0.001"), folder, alone(), say=lambda *_: None)
     for center, step, fields, of, says in (
-        ((0.0,), None, ("density",), None, "1 of the 2 numbers of a place in 2D"),
+        ((0.0,), None, ("density",), None, "1 given; a place in 2D has 2 numbers"),
         ((0.0, 0.0), 0.0, ("density",), None, "--step 0: not above 0"),
         ((0.0, 0.0), None, ("kind",), None, "--fields kind: frames hold no such number"),
         ((0.0, 0.0), None, ("density",), "oil", "--of oil: nothing has this name"),
