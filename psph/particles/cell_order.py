@@ -55,10 +55,17 @@ def in_cells(key: np.ndarray, of: np.ndarray, levels: int) -> Ordered:
 @compiled
 def find_ends(key, of, ends):
     """The lowest and the highest number of a cell along each axis, of each level (levels, 2, 3)."""
-    for k in range(len(key)):
-        for a in range(AXES):
-            cell = key[k] >> BITS * (AXES - 1 - a) & ALL
-            ends[of[k], 0, a], ends[of[k], 1, a] = min(ends[of[k], 0, a], cell), max(ends[of[k], 1, a], cell)
+    for a in range(AXES):
+        shift, k = np.uint64(BITS * (AXES - 1 - a)), np.uint64(0)
+        while k < np.uint64(len(key)):
+            # Particles of a level come many at once: what stands in registers need not be read again.
+            level = of[k]
+            lowest, highest = ends[level, 0, a], ends[level, 1, a]
+            while k < np.uint64(len(key)) and of[k] == level:
+                cell = key[k] >> shift & ALL
+                lowest, highest = min(lowest, cell), max(highest, cell)
+                k += np.uint64(1)
+            ends[level, 0, a], ends[level, 1, a] = lowest, highest
 
 
 @compiled

@@ -6,7 +6,7 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from psph.engine.jit import overload, register_jitable, tuple_of, unrolled
-from psph.engine.simd import bits, consecutive, lanes_of
+from psph.engine.simd import bits, consecutive, lanes_of, set_bits
 from psph.vectors import at, dot, nearest_image, subtract
 
 LANES = 8
@@ -109,7 +109,7 @@ def keep_lanes(array, end: int, lanes, bits: int) -> int:
 def _typed_keep_lanes(array, end, lanes, bits):
     def keep(array, end, lanes, bits):
         _store_kept(array, end, lanes, bits)
-        return end + HOW_MANY[bits]
+        return end + set_bits(bits)
 
     return keep
 

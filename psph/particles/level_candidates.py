@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.engine.jit import inside, overload, register_jitable, tuple_of, unrolled
-from psph.engine.simd import bits, consecutive, width_of
-from psph.particles.lanes import HOW_MANY, LANES, consecutive_each, keep_entries, keep_lanes
+from psph.engine.simd import bits, consecutive, put_consecutive, set_bits, width_of
+from psph.particles.lanes import LANES, consecutive_each, keep_entries, keep_lanes
 from psph.particles.level_ranges import AXES, WIDER
 from psph.vectors import at, dot, nearest_image, subtract
 
@@ -19,14 +19,14 @@ class Candidates(NamedTuple):
 
     ``position`` are the components of their places from the middle of the cell, m, ``within2`` the squares of
     how far they reach, m², and ``columns`` theirs; registers are filled up with places that are NaN, near
-    nobody.  ``rounded`` and ``rounded2`` are the same in single precision, and less what that may add.
+    nobody.  ``rounded`` are places and squares in single precision, less what that may add to these, a register
+    of each component and one of the squares behind one another.
     """
 
     position: tuple
     within2: np.ndarray
     columns: np.ndarray
-    rounded: tuple
-    rounded2: np.ndarray
+    rounded: np.ndarray
 
 
 class Gathered(NamedTuple):
@@ -42,11 +42,9 @@ class Gathered(NamedTuple):
 def room_for(groups: int, dimensions: int) -> Candidates:
     """Room for so many ``groups`` of candidates."""
     count = (groups + 2 * PARTS) * LANES
-    position, rounded = (
-        tuple(np.zeros(count, precision) for _ in range(dimensions)) for precision in (np.float64, np.float32)
-    )
-    columns = np.zeros(count, np.uint32)
-    return Candidates(position, np.zeros(count), columns, rounded, np.zeros(count, np.float32))
+    position = tuple(np.zeros(count) for _ in range(dimensions))
+    columns, rounded = np.zeros(count, np.uint32), np.zeros(count * (dimensions + 1), np.float32)
+    return Candidates(position, np.zeros(count), columns, rounded)
 
 
 def box_around(low, high, middle, origin, periods):
@@ -109,18 +107,52 @@ def _typed_beside_bits(x, box, within2, grids, m):
     return compare
 
 
-def near_bits(x_i, within2_i, near, n):
-    """Bit t says whether candidate ``n + t`` lies within its reach of ``x_i``, or within that of this one,
-    whose square is ``within2_i``; in single precision."""
-    x_ij = subtract(x_i, at(near.rounded, n))
-    return int(dot(x_ij, x_ij) <= max(within2_i, near.rounded2[n]))
+@register_jitable
+def place_of(near, n):
+    """Where candidate ``n`` stands among those in single precision: its first component; the others, and the
+    square of its reach, follow by a register each."""
+    return n + n // np.uint64(LANES) * np.uint64(LANES * len(near.position))
+
+
+def one_rounded(position, rounded, place):
+    """Place (dim,) and square of the reach of the candidate at ``place``, in single precision; there are as
+    many components as those of ``position``."""
+    x = tuple(rounded[place + np.uint64(d * LANES)] for d in range(len(position)))
+    return x, rounded[place + np.uint64(len(position) * LANES)]
+
+
+@overload(one_rounded)
+def _typed_one_rounded(position, rounded, place):
+    each = [f"rounded[place + np.uint64({d * LANES})]" for d in range(len(position) + 1)]
+    return unrolled("position, rounded, place", f"return {tuple_of(each[:-1])}, {each[-1]}", np=np)
+
+
+def all_rounded(position, rounded, place):
+    """The same of as many candidates as a register holds, from that at ``place`` on."""
+    return one_rounded(position, rounded, place)
+
+
+@overload(all_rounded)
+def _typed_all_rounded(position, rounded, place):
+    each = [f"consecutive(rounded, place + np.uint64({d * LANES}))" for d in range(len(position) + 1)]
+    returned = f"return {tuple_of(each[:-1])}, {each[-1]}"
+    return unrolled("position, rounded, place", returned, consecutive=consecutive, np=np)
+
+
+def near_bits(x_i, within2_i, near, place):
+    """Bit t says whether the candidate t behind that at ``place`` lies within its reach of ``x_i``, or within
+    that of this one, whose square is ``within2_i``; in single precision."""
+    x_j, within2_j = all_rounded(near.position, near.rounded, place)
+    x_ij = subtract(x_i, x_j)
+    return int(dot(x_ij, x_ij) <= max(within2_i, within2_j))
 
 
 @overload(near_bits)
-def _typed_near_bits(x_i, within2_i, near, n):
-    def compare(x_i, within2_i, near, n):
-        x_ij = subtract(x_i, consecutive_each(near.rounded, n))
-        return bits(dot(x_ij, x_ij) <= max(consecutive(near.rounded2, n), within2_i))
+def _typed_near_bits(x_i, within2_i, near, place):
+    def compare(x_i, within2_i, near, place):
+        x_j, within2_j = all_rounded(near.position, near.rounded, place)
+        x_ij = subtract(x_i, x_j)
+        return bits(dot(x_ij, x_ij) <= max(within2_j, within2_i))
 
     return compare
 
@@ -142,11 +174,12 @@ def _typed_keep_each(into, end, x, chosen):
 def round_all(near, end, narrower):
     """Write the first candidates, before ``end``, in single precision, the squares of reaches times
     ``narrower``."""
-    for d in range(len(near.position)):
-        for n in range(end):
-            near.rounded[d][n] = near.position[d][n]
-    for n in range(end):
-        near.rounded2[n] = near.within2[n] * narrower
+    squares = np.uint64(len(near.position) * LANES)
+    for n in range(np.uint64(0), np.uint64(end), width_of(near.within2)):
+        place = place_of(near, n)
+        for d in range(len(near.position)):
+            put_consecutive(near.rounded, place + np.uint64(d * LANES), consecutive(near.position[d], n))
+        put_consecutive(near.rounded, place + squares, consecutive(near.within2, n) * narrower)
 
 
 @register_jitable
@@ -193,14 +226,17 @@ def gather(grids, ranges, many, own, cell, box, within2, narrower, near):
 
 
 @inside
-def append_row(entries, end, itself, within2_i, near, first, last):
+def append_row(entries, end, itself, own, near, first, last):
     """Write the columns of the neighbours of the candidate ``itself`` behind ``end``, of those from ``first``
-    to ``last``; returns the new end.  ``within2_i`` is the square of how far it looks itself."""
-    x_i, x = at(near.rounded, itself), near.rounded[0][itself]
-    near.rounded[0][itself] = np.nan  # not its own neighbour
-    for n in range(np.uint64(first), np.uint64(last), width_of(near.rounded2)):
-        chosen = near_bits(x_i, within2_i, near, n)
-        keep_entries(entries, end, near.columns, n, chosen, near.rounded2)
-        end += HOW_MANY[chosen]
-    near.rounded[0][itself] = x
+    to ``last``; returns the new end.  ``own`` is 1 where it looks as far as it reaches itself, else 0."""
+    here = place_of(near, np.uint64(itself))
+    x_i, within2_i = one_rounded(near.position, near.rounded, here)
+    within2_i *= np.float32(own)
+    x = near.rounded[here]
+    near.rounded[here] = np.nan  # not its own neighbour
+    for n in range(np.uint64(first), np.uint64(last), width_of(near.rounded)):
+        chosen = near_bits(x_i, within2_i, near, place_of(near, n))
+        keep_entries(entries, end, near.columns, n, chosen, near.rounded)
+        end += set_bits(chosen)
+    near.rounded[here] = x
     return end

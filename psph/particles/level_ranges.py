@@ -60,13 +60,14 @@ def extent(grids, first, last, low, high):
     """Write the corners of the box around the particles ``first`` to ``last``, m from the origin, to ``low``
     and ``high`` (3,); their largest reach, m."""
     within2 = 0.0
-    for a in range(AXES):
-        low[a], high[a] = np.inf, -np.inf
-    for m in range(first, last):
-        for a in range(AXES):
-            x = grids.seen[a, m] - grids.origin[a]
-            low[a], high[a] = min(low[a], x), max(high[a], x)
+    for m in range(np.uint64(first), np.uint64(last)):
         within2 = max(within2, grids.within2[m])
+    for a in range(AXES):
+        least, most = np.inf, -np.inf
+        for m in range(np.uint64(first), np.uint64(last)):
+            x = grids.seen[a, m]
+            least, most = min(least, x), max(most, x)
+        low[a], high[a] = least - grids.origin[a], most - grids.origin[a]
     return np.sqrt(within2)
 
 
@@ -77,12 +78,18 @@ def around(cell, count):
 
 
 @register_jitable
-def gap(low, high, cell, inverse, count):
-    """How far a box from ``low`` to ``high``, m from the origin of an axis, is from one of its cells at the
-    least; 0 where the cell has no width, or is one of the outermost."""
-    if inverse == 0.0 or abs(cell) >= FARTHEST or count < 0:
+def width(inverse):
+    """How wide a cell is, m, of which a metre has so many; infinite where there is but one."""
+    return 1.0 / inverse if inverse > 0.0 else np.inf
+
+
+@register_jitable
+def gap(low, high, cell, wide, count):
+    """How far a box from ``low`` to ``high``, m from the origin of an axis, is from one of its cells, which
+    are so ``wide``, m, at the least; 0 where the cell is as wide as all, or one of the outermost."""
+    if wide == np.inf or abs(cell) >= FARTHEST or count < 0:
         return 0.0
-    return max(0.0, cell / inverse - high, low - (cell + 1) / inverse)
+    return max(0.0, cell * wide - high, low - (cell + 1) * wide)
 
 
 @inside
@@ -93,6 +100,7 @@ def candidates(grids, low, high, reach, levels, ranges):
     many, held = 0, 0
     for level in range(levels[0], levels[1]):
         n, per, box = grids.counts[level], grids.inverse[level], grids.box[level]
+        wide0, wide1 = width(per[0]), width(per[1])
         far = max(reach, grids.reach[level]) * WIDER
         first0, last0, n0 = along_axis(low[0], high[0], far, per[0], n[0], box[0, 0], box[1, 0])
         place = grids.base[level]
@@ -100,7 +108,7 @@ def candidates(grids, low, high, reach, levels, ranges):
             row0 = around(c0, n[0])
             if not box[0, 0] <= row0 <= box[1, 0]:
                 continue
-            left2 = far * far - gap(low[0], high[0], c0, per[0], n0) ** 2
+            left2 = far * far - gap(low[0], high[0], c0, wide0, n0) ** 2
             if left2 < 0.0:
                 continue
             first1, last1, n1 = along_axis(
@@ -110,7 +118,7 @@ def candidates(grids, low, high, reach, levels, ranges):
                 row1 = around(c1, n[1])
                 if not box[0, 1] <= row1 <= box[1, 1]:
                     continue
-                rest2 = left2 - gap(low[1], high[1], c1, per[1], n1) ** 2
+                rest2 = left2 - gap(low[1], high[1], c1, wide1, n1) ** 2
                 if rest2 < 0.0:
                     continue
                 first2, last2, _ = along_axis(

@@ -135,10 +135,9 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
             begin, named = end, every and (own or rows.across[m])
             itself = np.uint64(found.itself + np.int64(m) - members[0])
             if named:
-                own2 = np.float32(rows.own) * near.rounded2[itself]
                 all_levels = rows.across[m] and not parted
                 part = (np.int64(0), found.end) if all_levels else (found.first, found.last)
-                end = append_row(entries, end, itself, own2, near, *part)
+                end = append_row(entries, end, itself, rows.own, near, *part)
                 named = finds(rows.sought, k, entries, begin, end)
                 end = end if named else begin
             room.begin[row], room.lengths[row] = begin, end - begin
@@ -148,7 +147,7 @@ def fill_levels(first, last, grids, rows, room, others, ranges, corners, near):
             if parted:
                 begin = end
                 if named and rows.across[m]:
-                    end = append_row(entries, end, itself, own2, near, np.int64(0), found.first)
-                    end = append_row(entries, end, itself, own2, near, found.last, found.end)
+                    end = append_row(entries, end, itself, rows.own, near, np.int64(0), found.first)
+                    end = append_row(entries, end, itself, rows.own, near, found.last, found.end)
                 others.begin[row], others.lengths[row] = begin, end - begin
     return np.int64(0)

@@ -34,7 +34,7 @@ def _load(typing, array, first):
 
 
 def put_consecutive(array, first: int, lanes) -> None:
-    """Write lanes to the entries of an array from ``first`` on."""
+    """Write lanes to the entries of an array from ``first`` on, in the precision of these."""
     array[first] = lanes
 
 
@@ -47,8 +47,11 @@ def _typed_put_consecutive(array, first, lanes):
 def _write(typing, array, first, lanes):
     def build(context, builder, sig, args):
         data = context.make_array(sig.args[0])(context, builder, args[0]).data
-        place = builder.bitcast(builder.gep(data, [args[1]]), args[2].type.as_pointer())
-        builder.store(args[2], place).align = array.dtype.bitwidth // 8
+        kind, value = ir.VectorType(context.get_value_type(array.dtype), lanes.width), args[2]
+        if array.dtype.bitwidth < lanes.element.bitwidth:
+            value = builder.fptrunc(value, kind)
+        place = builder.bitcast(builder.gep(data, [args[1]]), kind.as_pointer())
+        builder.store(value, place).align = array.dtype.bitwidth // 8
         return context.get_dummy_value()
 
     return types.none(array, types.uint64, lanes), build
@@ -63,6 +66,24 @@ def bits(typing, mask):
         return builder.zext(whole, ir.IntType(64))
 
     return types.uint64(mask), build
+
+
+def set_bits(number: int) -> int:
+    """How many bits of a number are set."""
+    return int(number).bit_count()
+
+
+@overload(set_bits)
+def _typed_set_bits(number):
+    return lambda number: _set_bits(number)
+
+
+@intrinsic
+def _set_bits(typing, number):
+    def build(context, builder, sig, args):
+        return builder.ctpop(args[0])
+
+    return types.uint64(types.uint64), build
 
 
 GROUP = 4

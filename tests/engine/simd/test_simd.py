@@ -86,6 +86,25 @@ def test_records_are_turned(lists, count):
         assert first_of_each(table, lists, entry) == tuple(table[lists[entry], :count])
 
 
+@pytest.mark.parametrize("precision", [np.float64, np.float32])
+def test_lanes_are_written_in_the_precision_of_the_array(records, precision):
+    @compiled
+    def write(into, numbers):
+        simd.put_consecutive(into, np.uint64(3), simd.consecutive(numbers, np.uint64(2)))
+
+    into, numbers = np.zeros(32, precision), records.ravel()
+    write(into, numbers)
+    written = slice(3, 3 + simd.WIDTH)
+    assert (into[written] == numbers[2 : 2 + simd.WIDTH].astype(precision)).all()
+    assert not np.delete(into, written).any()
+
+
+def test_set_bits_are_counted():
+    counted = compiled(lambda number: simd.set_bits(np.uint64(number)))
+    for number in (0, 1, 0b1011, 2**62 + 2**32):
+        assert counted(number) == simd.set_bits(number) == bin(number).count("1")
+
+
 def test_a_sum_is_folded_by_its_own_join(records, lists):
     turn = simd.turning(2)
 
