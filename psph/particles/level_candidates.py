@@ -19,8 +19,8 @@ class Candidates(NamedTuple):
 
     ``position`` are the components of their places from the middle of the cell, m, ``within2`` the squares of
     how far they reach, m², and ``columns`` theirs; registers are filled up with places that are NaN, near
-    nobody.  ``rounded`` are places and squares in single precision, less what that may add to these, a register
-    of each component and one of the squares behind one another.
+    nobody.  ``rounded`` are places, and squares less what that may add to them, in single precision: behind a
+    register of each component one of the squares, so that a loop over all of it needs one address.
     """
 
     position: tuple

@@ -1,7 +1,16 @@
 """Several neighbours side by side in a register, worked on as if they were one number."""
 
 from psph.engine.simd.lanes import EIGHT, WIDTH, lanes_of, spread, where, width_of
-from psph.engine.simd.memory import AHEAD, GROUP, bits, consecutive, put_consecutive, set_bits, steps_between, turning
+from psph.engine.simd.memory import (
+    AHEAD,
+    GROUP,
+    bits,
+    consecutive,
+    put_consecutive,
+    set_bits,
+    steps_between,
+    turning,
+)
 from psph.engine.simd.sums import fold, total
 
 __all__ = [
