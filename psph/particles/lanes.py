@@ -6,41 +6,17 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from psph.engine.jit import overload, register_jitable, tuple_of, unrolled
-from psph.engine.simd import bits, consecutive, lanes_of, set_bits
-from psph.vectors import at, dot, nearest_image, subtract
+from psph.engine.simd import consecutive, lanes_of, set_bits
+from psph.vectors import at
 
 LANES = 8
 """Candidates of a group."""
 
 PACKED = np.zeros((1 << LANES, LANES), np.uint32)
 """For each pattern of bits the numbers of those that are set, packed to the left."""
-HOW_MANY = np.zeros(1 << LANES, np.uint64)
-"""For each pattern of bits how many are set."""
 for _bits in range(1 << LANES):
     _set = [t for t in range(LANES) if _bits >> t & 1]
     PACKED[_bits, : len(_set)] = _set
-    HOW_MANY[_bits] = len(_set)
-
-
-def near_bits(position, column: int, x_i, periods, cutoff2: float) -> int:
-    """Bit t says whether particle ``column + t`` lies within the cutoff of ``x_i``.
-
-    ``position`` tuple of component arrays; the arrays must go on for eight entries.
-    """
-    found = 0
-    for t in range(LANES):
-        x_ij = nearest_image(subtract(x_i, at(position, column + t)), periods)
-        found |= int(dot(x_ij, x_ij) < cutoff2) << t
-    return found
-
-
-@overload(near_bits)
-def _typed_near_bits(position, column, x_i, periods, cutoff2):
-    def compare(position, column, x_i, periods, cutoff2):
-        x_ij = nearest_image(subtract(x_i, consecutive_each(position, column)), periods)
-        return bits(dot(x_ij, x_ij) < cutoff2)
-
-    return compare
 
 
 def consecutive_each(arrays, first):
@@ -61,14 +37,14 @@ def append_near(entries, end: int, column: int, bits: int) -> int:
     """
     for t in range(LANES):
         entries[end + t] = column + PACKED[bits, t]
-    return end + int(HOW_MANY[bits])
+    return end + set_bits(bits)
 
 
 @overload(append_near)
 def _typed_append_near(entries, end, column, bits):
     def append(entries, end, column, bits):
         _store_packed(entries, end, column, PACKED, bits)
-        return end + HOW_MANY[bits]
+        return end + set_bits(bits)
 
     return append
 
@@ -114,6 +90,19 @@ def _typed_keep_lanes(array, end, lanes, bits):
     return keep
 
 
+def keep_each(into, end, x, chosen):
+    """Write each component of those places ``x`` of which a bit is ``chosen`` from ``end`` on."""
+    if chosen:
+        for kept, component in zip(into, x):
+            kept[end] = component
+
+
+@overload(keep_each)
+def _typed_keep_each(into, end, x, chosen):
+    lines = (f"keep_lanes(into[{d}], end, x[{d}], chosen)" for d in range(len(into)))
+    return unrolled("into, end, x, chosen", *lines, keep_lanes=keep_lanes)
+
+
 def keep_lines(lines, end: int, long: int, parts, bits: int) -> None:
     """Write such lanes of each of the ``parts`` behind place ``end`` of a line of its own, from the second
     on, as far as there are any; ``lines`` are ``long`` and stand one behind another."""
@@ -149,7 +138,7 @@ def _compressed(builder, value, bits):
     """Lanes of ``value`` of which a bit is set, packed to the left."""
     width, whole = value.type.count, ir.IntType(1)
     mask = builder.bitcast(builder.trunc(bits, ir.IntType(width)), ir.VectorType(whole, width))
-    kind = "f64" if isinstance(value.type.element, ir.DoubleType) else "i32"
+    kind = value.type.element.intrinsic_name
     call = cgutils.get_or_insert_function(
         builder.module,
         ir.FunctionType(value.type, [value.type, mask.type, value.type]),

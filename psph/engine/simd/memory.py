@@ -1,11 +1,12 @@
 """From memory to lanes: consecutive entries, records transposed, fixed-point differences."""
 
+import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from psph.engine.jit import overload
-from psph.engine.simd.lanes import lanes_of, spread_number
+from psph.engine.simd.lanes import EIGHT, Lanes, lanes_of, spread_number
 
 
 def consecutive(array, first: int):
@@ -18,9 +19,28 @@ def _typed_consecutive(array, first):
     return lambda array, first: _load(array, first)
 
 
+def eight(array, first: int):
+    """As many entries of an array from ``first`` on as there are lanes in single precision."""
+    return array[first]
+
+
+@overload(eight)
+def _typed_eight(array, first):
+    return lambda array, first: _load_eight(array, first)
+
+
 @intrinsic
 def _load(typing, array, first):
-    lanes = lanes_of(array.dtype)
+    return _loaded(lanes_of(array.dtype), array)
+
+
+@intrinsic
+def _load_eight(typing, array, first):
+    return _loaded(Lanes(array.dtype, EIGHT), array)
+
+
+def _loaded(lanes: Lanes, array):
+    """Signature and code of what loads such lanes from an array."""
 
     def build(context, builder, sig, args):
         data = context.make_array(sig.args[0])(context, builder, args[0]).data
@@ -33,8 +53,28 @@ def _load(typing, array, first):
     return lanes(array, types.uint64), build
 
 
+def narrowed(lanes):
+    """Lanes, rounded to single precision."""
+    return np.float32(lanes)
+
+
+@overload(narrowed)
+def _typed_narrowed(lanes):
+    return lambda lanes: _round(lanes)
+
+
+@intrinsic
+def _round(typing, lanes):
+    single = Lanes(types.float32, lanes.width)
+
+    def build(context, builder, sig, args):
+        return builder.fptrunc(args[0], context.get_value_type(single))
+
+    return single(lanes), build
+
+
 def put_consecutive(array, first: int, lanes) -> None:
-    """Write lanes to the entries of an array from ``first`` on, in the precision of these."""
+    """Write lanes to the entries of an array from ``first`` on."""
     array[first] = lanes
 
 
@@ -47,11 +87,8 @@ def _typed_put_consecutive(array, first, lanes):
 def _write(typing, array, first, lanes):
     def build(context, builder, sig, args):
         data = context.make_array(sig.args[0])(context, builder, args[0]).data
-        kind, value = ir.VectorType(context.get_value_type(array.dtype), lanes.width), args[2]
-        if array.dtype.bitwidth < lanes.element.bitwidth:
-            value = builder.fptrunc(value, kind)
-        place = builder.bitcast(builder.gep(data, [args[1]]), kind.as_pointer())
-        builder.store(value, place).align = array.dtype.bitwidth // 8
+        place = builder.bitcast(builder.gep(data, [args[1]]), args[2].type.as_pointer())
+        builder.store(args[2], place).align = array.dtype.bitwidth // 8
         return context.get_dummy_value()
 
     return types.none(array, types.uint64, lanes), build

@@ -86,16 +86,15 @@ def test_records_are_turned(lists, count):
         assert first_of_each(table, lists, entry) == tuple(table[lists[entry], :count])
 
 
-@pytest.mark.parametrize("precision", [np.float64, np.float32])
-def test_lanes_are_written_in_the_precision_of_the_array(records, precision):
+def test_eight_doubles_become_singles(records):
     @compiled
     def write(into, numbers):
-        simd.put_consecutive(into, np.uint64(3), simd.consecutive(numbers, np.uint64(2)))
+        simd.put_consecutive(into, np.uint64(3), simd.narrowed(simd.eight(numbers, np.uint64(2)) * 3.0))
 
-    into, numbers = np.zeros(32, precision), records.ravel()
+    into, numbers = np.zeros(32, np.float32), records.ravel()
     write(into, numbers)
-    written = slice(3, 3 + simd.WIDTH)
-    assert (into[written] == numbers[2 : 2 + simd.WIDTH].astype(precision)).all()
+    written = slice(3, 3 + simd.EIGHT)
+    assert (into[written] == (3.0 * numbers[2 : 2 + simd.EIGHT]).astype(np.float32)).all()
     assert not np.delete(into, written).any()
 
 
