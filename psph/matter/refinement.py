@@ -14,7 +14,7 @@ from psph.scene.particles import settled_at
 from psph.scene.parts.level import LevelPart, LevelWall
 from psph.scene.shapes import bounds
 from psph.simulation.levels import Resizing
-from psph.simulation.materials import tell_of_groups
+from psph.simulation.materials import loaded_of, tell_of_groups
 from psph.simulation.stages import nothing
 from psph.work import Rank, Stage, Work
 
@@ -58,7 +58,7 @@ class Refinement(Kind):
     @property
     def fields(self) -> tuple:
         """Whose corner they are and what follows, and where walls and bodies tell their load its share."""
-        return (*FIELDS, *([SHARE, SLOPE] if any(one.loaded for one in self.scene.species) else []))
+        return (*FIELDS, *([SHARE, SLOPE] if loaded_of(self.scene.species).any() else []))
 
     @property
     def load_reads(self) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_rooms, in_threads, threads
 from psph.fields import seen_at, view_of
-from psph.parallel.reductions import all_rows, largest, whole_sums
+from psph.parallel.reductions import all_rows, whole_sums
 from psph.particles.named_rows import Naming, find_beside
 from psph.particles.neighbours import empty
 from psph.scene.levels import CORNER, DIVIDED, LASTS, LENGTH, TIE, Levels
@@ -23,6 +23,7 @@ from psph.simulation.level_fit import ORDER, TIPS, Followed, Leaders, Weighed, f
 from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
 from psph.simulation.level_regions import GoingAlong
+from psph.simulation.streams import Streams
 from psph.simulation.surface_rows import rows_of
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
@@ -75,8 +76,8 @@ class Resizing(Work):
         self.follows = np.array([one.follows for one in species])
         materials = self.plan.materials
         self._evolves = ~self.fluid_of & materials.bearing & ~materials.given_pressure
-        self._mobile = np.array([one.is_fluid and one.mobile and not one.follows for one in species])
-        self._streams = any(scene.layout.periods) or any(one.ends_fluid for one in species)
+        leads = np.array([one.is_fluid and one.mobile and not one.follows for one in species])
+        self._streams = Streams(rank, leads)
         self._holds = np.array([float(one.no_slip and not one.is_fluid) for one in species])
         # Fluid behind an open end neither turns nor divides.
         fluids = [(not one.ends_fluid and one.fluid, one.level, one.mobile) for one in species]
@@ -294,18 +295,12 @@ class Resizing(Work):
         self._go(self.columns[: self._flowing], self._aside, dt, self.plan.carriers, shown, *arrays)
 
     def uneven(self) -> float:
-        """Of those who lead, where they may stream: along axes that repeat, or between open ends.
+        """Of those who lead, beside what all of them may do alike.
 
         Shifts as large as an even stream is fast would stir it, level by level: at 0.3 m/s, 0.8 m deep, up to
         0.12 m/s across in 2 s, and a region at rest would take 8 % of its momentum in 5 s.
         """
-        if not self._streams:
-            return math.inf
-        some = self._mobile[self.store.group[self.store.inner]]
-        v = [one[self.store.inner][some] for one in self.store["velocity"]]
-        tops = [way * one for one in v for way in (1.0, -1.0)]
-        ends = largest(self.comm, [one.max(initial=-math.inf) for one in tops])
-        return float(0.5 * np.sqrt(((ends[::2] + ends[1::2]) ** 2).sum()))
+        return self._streams.uneven()
 
     def impose(self, simulation) -> None:
         """The state of who follows at the new time; collective."""

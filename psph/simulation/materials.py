@@ -75,14 +75,12 @@ def materials_of(scene, states: Iterable[Entry], effects: Sequence) -> Materials
     """The table of a scene, with the equations of state that its case can call for and its ``effects``."""
     species = (*scene.species, *(group for kind in kinds_in(scene) for group in kind.groups()))
     own_laws, movement = laws(scene, states), movement_of(species)
-    flows = any(one.is_fluid for one in species)
 
     def each(value, dtype=bool) -> np.ndarray:
         return np.array([value(one) for one in species], dtype)
 
     level = each(lambda one: one.level, np.int64)
-    led = each(lambda one: is_prescribed(one.motion) and (flows or one.kind == WALL))
-    loaded = led | each(lambda one: one.loaded)
+    loaded = loaded_of(species)
     return Materials(
         species=species,
         kinds=tuple(one.kind for one in species),
@@ -97,6 +95,15 @@ def materials_of(scene, states: Iterable[Entry], effects: Sequence) -> Materials
         others=level != np.arange(1 + level.max(initial=0))[:, None],
         loaded=loaded if loaded.any() else None,
         **movement._asdict(),
+    )
+
+
+def loaded_of(species: Sequence) -> np.ndarray:
+    """Whether what pushes on each of the ``species`` is summed (species,): where it is asked for, and on what a
+    prescribed motion drives, for the books of the energy."""
+    flows = any(one.is_fluid for one in species)
+    return np.array(
+        [one.loaded or (is_prescribed(one.motion) and (flows or one.kind == WALL)) for one in species], bool
     )
 
 

@@ -318,8 +318,9 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     refuse_unwritten(scene, called, (*computed, *told, *at_start))
     seen = tuple(field for name, field in fields.items() if name in own)
     imaged = by_name(OF_EVERY_SCENE, seen).values()
-    sized = any(kind.sizes is not None for kind in matter)  # its density is a sum, over images too
-    weight = (0.0,) * scene.dimensions if sized else scene.gravity
+    # What has sizes that change sums its density, over images too: these bear no weight between the two.
+    summed = any(kind.sizes is not None and kind.sizes.grow for kind in matter)
+    weight = (0.0,) * scene.dimensions if summed else scene.gravity
     if scene.layout.mirror_planes:
         refuse_without_image(scene, called, fields)
     told = {name for name in told if name in own or name not in ONLY_READ}

@@ -292,3 +292,36 @@ def test_a_region_that_goes_on_to_a_mirror_is_not_warned_of(tmp_path):
     domain = ["space.lower=[0.0,-0.2]", "space.upper=[2.2,1.2]", "space.symmetry=['x.lower']"]
     kinds = kinds_in(Scene(draft(tmp_path, STILL.replace("FACTOR", "2"), region, body, *domain)))
     assert not [line for kind in kinds for line in kind.warnings() if "refine" in line]
+
+
+MIRROR_FLOOR = """
+time.end = 0.4
+[space]
+dimensions = 2
+spacing = 0.04
+periodic = ["x"]
+lower = [0.0, -0.2]
+upper = [2.4, 1.2]
+refine = [{ shape.box = { lower = [0.8, -0.2], upper = [1.6, 2.0] } }]
+[physics]
+gravity = [0.0, -9.81]
+sound_speed = 40.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [2.4, 0.8] }
+pressure = "hydrostatic"
+[walls.floor]
+shape.box = { lower = [0.0, -0.2], upper = [2.4, 0.0] }
+condition = "mirror"
+"""
+
+
+def test_water_rests_on_a_mirror_under_a_region(tmp_path):
+    """Images bear the weight between them and the floor, as with one spacing: until 30 November theirs was
+    none where sizes differ, as a gas has it, and the lowest row was off by half of ρg dx from the start on."""
+    simulation = start(draft(tmp_path, MIRROR_FLOOR))
+    while simulation.time < 0.4:
+        simulation.step(0.4)
+    x, v, p, m, _ = leading(simulation)
+    assert np.sqrt(m @ (v**2).sum(axis=1) / m.sum()) < 0.002
+    low = x[:, 1] < 0.04
+    assert p[low] == pytest.approx(1000.0 * 9.81 * (0.8 - x[low, 1]), abs=0.1 * 9810.0 * 0.04)

@@ -56,12 +56,13 @@ class OfOneGamma(NamedTuple):
 
 
 class OfUnlikeGamma(NamedTuple):
-    """What spreads is p/ρ = (γ − 1) u, each pair with the mean of its 1/(γ − 1)."""
+    """What spreads is p/ρ = (γ − 1) u, each pair with the harmonic mean of its 1/(γ − 1): by the plain one a
+    gas of small γ, which has much heat, would set the pace."""
 
     def excess(self, i, j, pair):
-        """Of p/ρ by the mean of u/(p/ρ), J/kg."""
+        """Of p/ρ by the harmonic mean of u/(p/ρ), J/kg."""
         own, other = i.pressure * i.specific_volume, j.pressure * j.specific_volume
-        return 0.5 * (own - other) * (i.thermal_energy / own + j.thermal_energy / other)
+        return 2.0 * (own - other) / (own / i.thermal_energy + other / j.thermal_energy)
 
 
 class Conduction(NamedTuple):
@@ -75,7 +76,7 @@ class Conduction(NamedTuple):
 def conduction_in(scene: Facts) -> Conduction:
     """The conduction of a ``scene``, of no strength where it has none."""
     physics = scene.physics
-    pulled = physics.self_gravity or physics.central_force or scene.frame is not None or any(scene.gravity)
+    pulled = physics.self_gravity or physics.central_force or any(scene.gravity)
     gammas = {one.law.gamma for one in scene.species if isinstance(one.law, OfHeat)}
     return Conduction(
         physics.heat_conduction.strength if physics.heat_conduction else 0.0,

@@ -104,7 +104,11 @@ def harmonic(curve: Curve, of_period: float) -> tuple[complex, float]:
     """The complex amplitude A of the part Re A exp(iωt) with this period, s, over as many whole ones as end
     with the curve, beside its harmonics and a straight line, by least squares; and the standard error of
     |A|."""
-    whole = math.floor(curve.lasts / of_period * (1.0 + 1e-9))
+    rows = len(curve.time)
+    covered = (
+        curve.lasts * rows / max(rows - 1, 1)
+    )  # a row counts until the next: the last of a period is due
+    whole = math.floor(covered / of_period * (1.0 + 1e-9))
     if whole < 1:
         raise NoNumber(f"it lasts {curve.lasts:g} s, less than a period of {of_period:g} s")
     used = curve.time >= curve.time[-1] - whole * of_period * (1.0 + 1e-9)
