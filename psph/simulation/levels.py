@@ -23,8 +23,8 @@ from psph.simulation.level_fit import ORDER, TIPS, Followed, Leaders, Weighed, f
 from psph.simulation.level_images import LeaderImages, images_in
 from psph.simulation.level_loops import FAR, LEADING, NEAR, PARTS, SELDOM, LevelLoops
 from psph.simulation.level_regions import GoingAlong
-from psph.simulation.streams import Streams
 from psph.simulation.surface_rows import rows_of
+from psph.simulation.unevenness import Unevenness
 from psph.smoothing import kernel
 from psph.vectors import add, at, put, scale
 from psph.work import Rank, Work
@@ -77,7 +77,7 @@ class Resizing(Work):
         materials = self.plan.materials
         self._evolves = ~self.fluid_of & materials.bearing & ~materials.given_pressure
         leads = np.array([one.is_fluid and one.mobile and not one.follows for one in species])
-        self._streams = Streams(rank, leads)
+        self._velocities = Unevenness(rank, leads)
         self._holds = np.array([float(one.no_slip and not one.is_fluid) for one in species])
         # Fluid behind an open end neither turns nor divides.
         fluids = [(not one.ends_fluid and one.fluid, one.level, one.mobile) for one in species]
@@ -300,7 +300,7 @@ class Resizing(Work):
         Shifts as large as an even stream is fast would stir it, level by level: at 0.3 m/s, 0.8 m deep, up to
         0.12 m/s across in 2 s, and a region at rest would take 8 % of its momentum in 5 s.
         """
-        return self._streams.uneven()
+        return self._velocities.uneven()
 
     def impose(self, simulation) -> None:
         """The state of who follows at the new time; collective."""

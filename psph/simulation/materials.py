@@ -99,8 +99,8 @@ def materials_of(scene, states: Iterable[Entry], effects: Sequence) -> Materials
 
 
 def loaded_of(species: Sequence) -> np.ndarray:
-    """Whether what pushes on each of the ``species`` is summed (species,): where it is asked for, and on what a
-    prescribed motion drives, for the books of the energy."""
+    """Whether what pushes on each of the ``species`` is summed (species,): where it is asked for, and on what
+    a prescribed motion drives, for the books of the energy."""
     flows = any(one.is_fluid for one in species)
     return np.array(
         [one.loaded or (is_prescribed(one.motion) and (flows or one.kind == WALL)) for one in species], bool

@@ -11,10 +11,10 @@ ALIKE = 1e-9
 """Part of their speed by which velocities of what goes along as one differ, by rounding."""
 
 
-class Streams:
-    """Velocities of ``some`` groups (groups,) beside that of all of them along axes on which these may stream,
-    since they repeat, or lie between open ends, or since nothing stands there; and beside that of all walls and
-    bodies along the others, where these go as one."""
+class Unevenness:
+    """Velocities of ``some`` groups (groups,) beside that of all of them along axes on which these may
+    stream, since they repeat, or lie between open ends, or since nothing stands there; and beside that of all
+    walls and bodies along the others, where these go as one."""
 
     def __init__(self, rank, some: np.ndarray):
         scene, plan, self.store, self.domain, _ = rank
