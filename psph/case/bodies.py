@@ -9,6 +9,7 @@ from pydantic import Strict
 from psph.acts import BODIES, FRAME, ONE, speaks_for
 from psph.case.angles import CONTACT_ANGLE, ContactAngle
 from psph.case.findings import Finding
+from psph.case.fitted import FITTED
 from psph.case.keys import AXES, Name, Vector, key
 from psph.case.lines import Line, tied
 from psph.case.motion import Motions, way_and_turn
@@ -77,6 +78,7 @@ class Body(Placed):
     no_slip: bool = key("the fluid has the body's velocity at its face; needs a viscosity", False)
     condition: Literal[BEARING] = key("how it acts on the fluid, as the condition of a wall", DYNAMIC)
     contact_angle: ContactAngle | None = CONTACT_ANGLE
+    fitted: bool = FITTED
     continues: Name | None = key(
         "the fluid whose density and initial pressure its particles have",
         None,

@@ -9,6 +9,7 @@ from psph.acts import refusals
 from psph.case.corners import cornered, of_kinds, of_tables
 from psph.case.errors import advise, with_points
 from psph.case.findings import Finding, Location, asked_of, frictions_of, not_of
+from psph.case.fitted import fitted
 from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
@@ -43,6 +44,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         of_kinds,
         _single,
         refined,
+        fitted,
         _stepped,
         due,
     )

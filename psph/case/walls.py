@@ -6,6 +6,7 @@ from pydantic import create_model, model_validator
 from pydantic_core import PydanticCustomError
 
 from psph.case.angles import CONTACT_ANGLE, ContactAngle
+from psph.case.fitted import FITTED
 from psph.case.keys import Name, Vector, key
 from psph.case.motion import Motions, motions_type
 from psph.case.placed import Answering, Placed
@@ -48,6 +49,7 @@ class Wall(Placed):
     )
     contact_angle: ContactAngle | None = CONTACT_ANGLE
     displaces: bool = key("it replaces fluid and soil where they overlap at the start, as a body does", False)
+    fitted: bool = FITTED
 
     called: ClassVar = "wall"
     rigid: ClassVar = True

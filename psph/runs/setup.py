@@ -19,6 +19,7 @@ from psph.runs.uncompiled import in_one_line
 from psph.scene.particles import ParticleSet
 from psph.simulation.cpu import Engine
 from psph.simulation.filling import block_of
+from psph.simulation.fitting import fitted
 from psph.simulation.plan import Plan
 from psph.simulation.relaxing import relaxed
 from psph.simulation.step import Simulation
@@ -64,7 +65,8 @@ def lattice_particles(scene, comm) -> ParticleSet:
     cuts = np.searchsorted(reached, goals)
     cuts[-1] = scene.layout.planes
     first, last = int(cuts[comm.rank]), int(cuts[comm.rank + 1])
-    return relaxed(scene, scene.particles(first, last, int(reached[first])), comm)
+    found = fitted(scene, scene.particles(first, last, int(reached[first])), comm)
+    return relaxed(scene, found, comm)
 
 
 def store_of(scene, plan: Plan, found: ParticleSet) -> Store:

@@ -47,28 +47,29 @@ def wider(layout: Layout) -> Lattice:
     return replace(lattice, first=tuple(first), counts=counts)
 
 
-def held_sites(layout: Layout, first: int, last: int) -> Held:
-    """The sites of planes ``first`` to ``last - 1`` of the wider lattice that hold fluids in their shapes.
+def held_sites(layout: Layout, moving: list[int], first: int, last: int) -> Held:
+    """The sites of planes ``first`` to ``last - 1`` of the wider lattice that hold the ``moving`` parts in
+    their shapes.
 
-    They are of all other parts, of other fluids that relax too, and of none: so a free surface stays flat,
-    and every wall is as one of particles.
+    They are of all other parts, of other ones that move too, and of none: so a free surface stays flat, and
+    every wall is as one of particles.
     """
     wide = replace(layout, lattice=wider(layout))
-    found = [_held(wide, begin, end) for begin, end in wide.lattice.chunks(first, last)]
+    found = [_held(wide, moving, begin, end) for begin, end in wide.lattice.chunks(first, last)]
     empty = Held(np.empty(0, np.int64), np.empty(0, np.uint8), np.empty((0, layout.dimensions)))
     return Held(*map(np.concatenate, zip(empty, *found)))
 
 
-def _held(wide: Layout, begin: int, end: int) -> Held:
+def _held(wide: Layout, moving: list[int], begin: int, end: int) -> Held:
     lattice, deep = wide.lattice, wide.wall_reach
-    around, fluids = _planes(wide, begin - deep, end + deep), relaxing(wide)
+    around = _planes(wide, begin - deep, end + deep)
     inner = slice(deep, deep + end - begin)
     own, near = around[inner], np.zeros(around[inner].shape, bool)
-    for fluid in fluids:
-        beside = around == fluid
+    for part in moving:
+        beside = around == part
         for k, d in enumerate(lattice.axes):
             beside = np.moveaxis(_spread(np.moveaxis(beside, k, 0), deep, bool(wide.periods[d])), 0, k)
-        near |= beside[inner] & (own != fluid)
+        near |= beside[inner] & (own != part)
     sites = np.flatnonzero(near)
     grid = lattice.grid(begin, end)
     places = [np.broadcast_to(x, own.shape).ravel()[sites] for x in grid]

@@ -1,11 +1,13 @@
-"""Fluids that start relaxed find their places: from a shaken lattice they go to where it is less crowded.
+"""Fluids that start relaxed find their places: from a shaken lattice they go to where it is less crowded.  So
+do those beside what is fitted (psph.simulation.fitting), from the sites that they have.
 
 A lattice is a special state: flow shears its rows apart, and where it breaks it sounds.  Relaxed particles
 stand as those of a flow do after a while, without order but evenly.  Colagrossi, Bouscasse, Antuono & Marrone
 (2012), Comput. Phys. Commun. 183, 1641, pack particles so, by an acceleration −β Σ V ∇W and a friction.
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -16,8 +18,11 @@ from psph.fields import LISTED_POSITION, POSITION, VECTOR, Field, view_of
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.reductions import largest
 from psph.particles.store import Store
+from psph.scene.fitting import fitted_parts, near_faces
+from psph.scene.layout import NONE
 from psph.scene.particles import ParticleSet, settled_at
 from psph.scene.relaxing import ITERATIONS, held_sites, relaxing, wider
+from psph.simulation.along_faces import OUTSIDE, SIDE, Along
 from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, at, dot, multiply, nearest_image, put, scale, subtract, zero_like
 
@@ -34,9 +39,13 @@ but what it leaves is less even."""
 KEPT = 0.9
 """Of a step, by the next one."""
 
+SELDOM = 5
+"""Steps after which faces are looked for anew: in between they are planes."""
+
 STEP = Field("step", "m", "the last step of a particle", VECTOR)
 WHOSE = Field("whose", "1", "number of the part that has it; −1 less that of who stands still")
 """Ghosts have no group, and so it travels."""
+FILLED = Field("filled", "1", "part of its volume that crowds others")
 
 
 class Crowd(NamedTuple):
@@ -52,39 +61,94 @@ class Crowd(NamedTuple):
     shift: tuple
 
 
+class Resting(NamedTuple):
+    """What crowds those that move, and stands still: its ids (n,), ``whose`` it is (n,), where it stands,
+    ``position`` (n, dim) m, and which part of a particle's volume it fills, ``filled`` (n,)."""
+
+    id: np.ndarray
+    whose: np.ndarray
+    position: np.ndarray
+    filled: np.ndarray
+
+    @classmethod
+    def of(cls, ids: np.ndarray, part: np.ndarray, position: np.ndarray) -> "Resting":
+        """Of some parts (n,)."""
+        return cls(ids, -1.0 - part, position, np.ones(len(ids)))
+
+    def filled_by(self, part: np.ndarray) -> "Resting":
+        """Those of which a ``part`` (n,) of the volume is filled, above nothing."""
+        return Resting(*(values[part > 0.0] for values in self._replace(filled=part)))
+
+    def and_also(self, other: "Resting") -> "Resting":
+        """Both."""
+        return Resting(*map(np.concatenate, zip(self, other)))
+
+
+class Sides(Protocol):
+    """Faces on whose one side particles stay."""
+
+    def look(self, store: Store) -> None:
+        """Find the faces beside all particles here."""
+
+    def hold(self, store: Store, step: tuple) -> None:
+        """Keep the particles on their side, and their last ``step`` from leading them to the other."""
+
+
 def relaxed(scene, found: ParticleSet, comm) -> ParticleSet:
-    """The particles ``found`` of a scene, of which each rank has a part: those of fluids that relax are where
-    they come to stand, on whichever rank, with the state that the scene has there; collective."""
-    fluids = relaxing(scene.layout)
-    if not fluids:
+    """The particles ``found`` of a scene, of which each rank has a part: those of fluids that relax, and of
+    all that flows those beside fitted walls and bodies, are where they come to stand, on whichever rank, with
+    the state that the scene has there; collective."""
+    layout = scene.layout
+    moving, along = np.isin(found.material, relaxing(layout)), fitted_parts(layout)
+    parts = relaxing(layout)
+    if along:
+        parts = [part.number for part in layout.parts if part.flows]
+        flows = np.flatnonzero(np.isin(found.material, parts) & ~moving)
+        moving[flows] = near_faces(layout, along, found.position[flows])
+    if not parts:
         return found
-    moving = np.isin(found.material, fluids)
-    domain = _domain(scene, comm, found.where(moving))
-    _relax(scene, domain)
+    still = sites_beside(scene, comm, parts, ~np.isin(np.arange(NONE + 1), along))
+    # Fitted particles are not where their sites are; of what flows those farther off stand still.
+    stands = ~moving & np.isin(found.material, (*along, *parts))
+    whose = np.where(np.isin(found.material, parts), NONE, found.material)[stands]
+    still = still.and_also(Resting.of(found.id[stands], whose, found.position[stands]))
+    domain = domain_of(scene, comm, found.where(moving), still, SIDE if along else ())
+    settle(scene, domain, Along(layout, along, OUTSIDE) if along else None)
+    return found.where(~moving).joined(settled_at(scene.starts, *places_in(domain)))
+
+
+def places_in(domain: Domain) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of those that move the ids (n,), parts (n,) and places (n, dim), m, that this rank has of them."""
     store = domain.store
     free = store["whose"][store.inner] >= 0.0
     position = domain.inside(store.owned_rows("position"))[free]
-    return found.where(~moving).joined(
-        settled_at(scene.starts, store.id[store.inner][free], store.group[store.inner][free], position)
+    return store.id[store.inner][free], store.group[store.inner][free], position
+
+
+def sites_beside(scene, comm, parts: list[int], some: np.ndarray) -> Resting:
+    """This rank's share of the sites that hold ``parts`` in their shapes, of ``some`` parts (NONE + 1,)."""
+    planes = wider(scene.layout).planes
+    held = held_sites(
+        scene.layout, parts, *(planes * rank // comm.size for rank in (comm.rank, comm.rank + 1))
     )
+    stand = some[held.part]
+    behind = held.id[stand] + int(scene.census.counts.sum())
+    return Resting.of(behind, held.part[stand], held.position[stand])
 
 
-def _domain(scene, comm, moving: ParticleSet) -> Domain:
-    """The domain of the particles that move, and of the sites that hold them."""
+def domain_of(scene, comm, moving: ParticleSet, still: Resting, more: Sequence[Field] = ()) -> Domain:
+    """The domain of particles that move, and of what stands still; with ``more`` fields."""
     layout, lattice = scene.layout, wider(scene.layout)
-    fields = (POSITION, LISTED_POSITION, WHOSE, STEP)
+    fields = (POSITION, LISTED_POSITION, WHOSE, FILLED, STEP, *more)
     store = Store(layout.dimensions, fields, {}, view_of(("position",)))
-    ends = [lattice.planes * rank // comm.size for rank in (comm.rank, comm.rank + 1)]
-    held = held_sites(layout, *ends)
-    behind = held.id + int(scene.census.counts.sum())
     both = (
-        (moving.id, moving.material, moving.material.astype(float), moving.position),
-        (behind, held.part, -1.0 - held.part, held.position),
+        (moving.id, moving.material, moving.material.astype(float), moving.position, 1.0),
+        (still.id, np.full(len(still.id), NONE, np.uint8), *still[1:]),
     )
-    for ids, part, whose, position in both:
+    for ids, part, whose, position, filled in both:
         block = np.zeros((len(store.data), len(ids)))
         block[list(store.rows["position"])] = position.T
-        block[store.rows["whose"].start] = whose
+        block[store.rows["whose"].start], block[store.rows["filled"].start] = whose, filled
         store.append(ids, part, block)
     lower = tuple(map(min, layout.lower, lattice.lower))
     upper = tuple(map(max, layout.upper, lattice.upper))
@@ -93,11 +157,12 @@ def _domain(scene, comm, moving: ParticleSet) -> Domain:
         store,
         Extent(layout.axis, lower, upper, layout.periods),
         layout.reach.cutoff,
-        Travels(("whose",), ("position",)),
+        Travels(("whose", "filled"), ("position",)),
     )
 
 
-def _relax(scene, domain: Domain) -> None:
+def settle(scene, domain: Domain, faces: Sides | None = None) -> None:
+    """Let particles of the ``domain`` go to where it is less crowded; some come to stand along ``faces``."""
     store, layout = domain.store, scene.layout
     skin, moved = domain.cutoff - layout.support, np.inf
     crowd = _crowd(scene)
@@ -112,8 +177,13 @@ def _relax(scene, domain: Domain) -> None:
         way = tuple(np.zeros(store.total) for _ in range(layout.dimensions))
         inner = store.low, store.low + store.owned
         by = crowd if 2 * k < ITERATIONS else even
-        in_threads(find_ways, *inner, store["position"], store["whose"], store.low, domain.lists, by, way)
+        told = store["position"], store["whose"], store["filled"], store.low, domain.lists
+        in_threads(find_ways, *inner, *told, by, way)
+        if faces and (k % SELDOM == 0 or k == ITERATIONS - 1):
+            faces.look(store)
         moved += float(largest(domain.comm, [_step(store, way, *step)])[0])
+        if faces:
+            faces.hold(store, store[STEP.name])
 
 
 def _step(store: Store, way: tuple, strength: float, longest: float) -> float:
@@ -143,7 +213,7 @@ def _crowd(scene) -> Crowd:
 
 
 @elementwise
-def find_ways(first, last, position, whose, low, lists, crowd, way):
+def find_ways(first, last, position, whose, filled, low, lists, crowd, way):
     """The way out of the crowd, −Σ V [1 + R (W/W(dx))⁴] ∇W in 1/m, of the particles in some columns.
 
     Those of one part and the sites of all others crowd; what stands still has no way.
@@ -175,6 +245,6 @@ def find_ways(first, last, position, whose, low, lists, crowd, way):
                     continue
                 r = np.sqrt(r2)
                 w2 = weight(crowd.kernel, r) ** 2
-                pull = crowd.volume * slope_over_r(crowd.kernel, r, 1.0 / r)
+                pull = filled[j] * crowd.volume * slope_over_r(crowd.kernel, r, 1.0 / r)
                 total = add(total, scale(away, -pull * (1.0 + crowd.near * (w2 * w2))))
         put(way, k, total)

@@ -184,6 +184,11 @@ class Part:
         return False
 
     @property
+    def fitted(self) -> bool:
+        """Whether its particles stand along its faces (psph.scene.fitting)."""
+        return False
+
+    @property
     def displaces(self) -> bool:
         """Whether it takes the place of what flows."""
         return False

@@ -13,6 +13,11 @@ class RigidPart(Part):
     keeps_form = True
     rigid = True
 
+    @property
+    def fitted(self) -> bool:
+        """As its table says."""
+        return self.table.fitted
+
     def own(self, known: Known) -> dict[str, Any]:
         """What it sets to the fluid before it; beside elastic solids the largest of their moduli."""
         wetting, wetting_range = cosines(self.table.contact_angle)
