@@ -47,7 +47,14 @@ def marks_of(layout: Layout, hung: Mapping[str, np.ndarray] = MappingProxyType({
     sketched = (
         mark._replace(lines=[hung[mark.key]]) if mark.key in hung else mark for mark in _sketched(layout)
     )
-    return [*_domain(layout), *_ends(layout), *_zones(layout), *sketched, *_counted(layout)]
+    return [
+        *_domain(layout),
+        *_ends(layout),
+        *_zones(layout),
+        *_refined(layout),
+        *sketched,
+        *_counted(layout),
+    ]
 
 
 def _mark(key: str, says: str, lines) -> Mark:
@@ -102,6 +109,19 @@ def _zones(layout: Layout) -> Iterator[Mark]:
             axis = AXES.index(zone.axis)
             planes = [_across(axis, at, ends) for at in (zone.begin, zone.end)]
             yield _mark(f"physics.{name}", "", [*planes, *zip(*(plane[:-1] for plane in planes))])
+
+
+def _refined(layout: Layout) -> Iterator[Mark]:
+    """Regions with finer particles: in 2D their outlines, in 3D the boxes around them."""
+    for region in layout.case.space.refine:
+        form, times = form_of(region.shape), f"({region.factor} times finer"
+        box = np.clip(form.bounds, layout.lower, layout.upper)
+        if layout.dimensions == 2:
+            outline = [np.clip(line, *box) for line in form.outline(layout.spacing)]
+            lines = [np.concatenate([line, line[:1]]) for line in outline]
+            yield Mark(region.where, f"{times})", lines)
+        else:
+            yield _mark(region.where, f"{times}, the box around it)", edges(*map(tuple, box)))
 
 
 def _counted(layout: Layout) -> Iterator[Mark]:

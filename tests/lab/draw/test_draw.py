@@ -112,6 +112,40 @@ def test_regions_of_gauges_are_marked(tmp_path):
     assert marks["gauges.over.overtopping"].says == "(-x)"
 
 
+def test_finer_regions_are_marked(tmp_path):
+    """By their outline, cut off at the domain."""
+    text = REGIONS_2D
+    found = {mark.key: mark for mark in marks_of(Scene(draft(tmp_path, text)).layout)}
+    box, disc = found["space.refine[0]"], found["space.refine[1]"]
+    assert box.says == "(2 times finer)" and disc.says == "(4 times finer)"
+    [line] = box.lines
+    assert line.min(axis=0).tolist() == [1.2, -0.2] and line.max(axis=0).tolist() == [1.6, 0.8]
+    assert line[0].tolist() == line[-1].tolist()
+    [ring] = disc.lines
+    assert np.hypot(*(ring - [0.6, 0.4]).T) == pytest.approx(0.1, rel=0.01)
+
+
+REGIONS_2D = """
+[space]
+dimensions = 2
+spacing = 0.04
+lower = [-0.2, -0.2]
+upper = [2.0, 0.8]
+refine = [
+    { shape.box = { lower = [1.2, -0.4], upper = [1.6, 1.0] } },
+    { shape.disc = { center = [0.6, 0.4], radius = 0.1 }, factor = 4 },
+]
+[time]
+end = 1.0
+[physics]
+sound_speed = 20.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.8, 0.6] }
+[walls.floor]
+shape.box = { lower = [-0.2, -0.2], upper = [2.0, 0.0] }
+"""
+
+
 def test_a_chain_is_drawn_as_it_hangs():
     scene = Scene(load(ROOT / "run/cases/moored_pontoon.toml"))
     marks = {mark.key: mark for mark in marks_of(scene.layout, strung_at_start(scene))}
