@@ -99,6 +99,16 @@ def test_response_is_the_ratio_of_amplitudes_at_the_period_of_the_wave():
         oscillation.response(heave, wave, 20.0)
 
 
+def test_a_period_needs_no_row_at_its_end():
+    """Rows each 0.02 s of a wave of 1.5 s: the one at 1.5 s would be the first of the next period."""
+    time = 3.0 + 0.02 * np.arange(75)
+    angle = 2.0 * math.pi * time / 1.5
+    wave, push = Curve(time, 0.1 * np.cos(angle)), Curve(time, 50.0 * np.sin(angle))
+    assert oscillation.response(push, wave, 1.5).value == pytest.approx(500.0)
+    with pytest.raises(NoNumber, match="less than a period"):
+        oscillation.response(push, wave, 1.53)
+
+
 def jonswap(height: float, peak: float, lasts: float, seed: int) -> Curve:
     """A sea with H_s, m, and T_p, s, of 400 waves with phases at random (Hasselmann and others 1973)."""
     frequency = np.arange(1, 4 * round(lasts / peak) + 1) / lasts
