@@ -151,9 +151,11 @@ def _misfilled(scene: Scene) -> Iterator[str]:
         own, drawn = volume_of(scene.layout, number).volume, drawn_volume(scene.layout, table.shape)
         if abs(own / drawn - 1.0) > MOST_MISFILLED:
             unit = "m2" if scene.dimensions == 2 else "m3"
+            between = "weighs what they fill, and displaces what is between both"
             yield (
                 f"bodies.{name}: its particles fill {own:.4g} {unit} of the {drawn:.4g} {unit} of its shape, "
-                "and it weighs and displaces what they fill; make space.spacing smaller"
+                f"and it {between if table.fitted else 'weighs and displaces what they fill'}; make "
+                "space.spacing smaller"
             )
 
 

@@ -39,6 +39,9 @@ but what it leaves is less even."""
 KEPT = 0.9
 """Of a step, by the next one."""
 
+CORNERS = 4
+"""How often what is left at the end is put on its side: in a corner one face leads through the other."""
+
 SELDOM = 5
 """Steps after which faces are looked for anew: in between they are planes."""
 
@@ -184,6 +187,9 @@ def settle(scene, domain: Domain, faces: Sides | None = None) -> None:
         moved += float(largest(domain.comm, [_step(store, way, *step)])[0])
         if faces:
             faces.hold(store, store[STEP.name])
+    for _ in range(CORNERS if faces else 0):
+        faces.look(store)
+        faces.hold(store, store[STEP.name])
 
 
 def _step(store: Store, way: tuple, strength: float, longest: float) -> float:

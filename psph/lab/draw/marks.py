@@ -113,15 +113,15 @@ def _zones(layout: Layout) -> Iterator[Mark]:
 
 def _refined(layout: Layout) -> Iterator[Mark]:
     """Regions with finer particles: in 2D their outlines, in 3D the boxes around them."""
-    for region in layout.case.space.refine:
-        form, times = form_of(region.shape), f"({region.factor} times finer"
+    for one in layout.case.space.refine:
+        form, times = form_of(one.shape), f"({one.factor} times finer"
         box = np.clip(form.bounds, layout.lower, layout.upper)
         if layout.dimensions == 2:
             outline = [np.clip(line, *box) for line in form.outline(layout.spacing)]
             lines = [np.concatenate([line, line[:1]]) for line in outline]
-            yield Mark(region.where, f"{times})", lines)
+            yield Mark(one.where, f"{times})", lines)
         else:
-            yield _mark(region.where, f"{times}, the box around it)", edges(*map(tuple, box)))
+            yield _mark(one.where, f"{times}, the box around it)", edges(*map(tuple, box)))
 
 
 def _counted(layout: Layout) -> Iterator[Mark]:
