@@ -1,5 +1,6 @@
 """What the particles of some cells share where all reach as far: those that may be near any of them."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -79,6 +80,8 @@ def _typed_outside(x, half):
 def far_bits(x, middle, half, near):
     """Bit t says whether the particle t of those at ``x`` is farther than the cutoff from a box of such a
     ``middle`` and ``half`` its width, m."""
+    if any(map(math.isnan, (*x, *middle))):
+        return 0
     away = outside(nearest_image(subtract(x, middle), near.periods), half)
     return int(dot(away, away) > near.cutoff2)
 
@@ -125,6 +128,8 @@ def gather(near, first, last, ranges, found):
 
 def near_bits(x_i, near, x_j):
     """Bit t says whether the particle t of those at ``x_j`` is within the cutoff of ``x_i``."""
+    if any(map(math.isnan, (*x_i, *x_j))):
+        return 0  # plain Python rounds no NaN
     x_ij = nearest_image(subtract(x_i, x_j), near.periods)
     return int(dot(x_ij, x_ij) < near.cutoff2)
 
