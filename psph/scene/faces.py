@@ -2,10 +2,20 @@
 
 import numpy as np
 
+from psph.composition.reflections import BELOW
 from psph.scene.census import Census
+from psph.scene.forms.form import Form
+from psph.scene.forms.joined import Union
 from psph.scene.forms.make import form_of
+from psph.scene.forms.placed import Map, Moved
 from psph.scene.lattice import TOLERANCE
 from psph.scene.layout import Layout
+
+WITHIN = 1e-3
+"""Spacings from a mirror, or from an end of the domain, within which a part has no face: it goes on there."""
+
+FAR = 1e9
+"""A place beyond all faces, m."""
 
 FLAT = 0.95
 """Length of the mean of the normals half a spacing around a particle from which no edge is near."""
@@ -58,3 +68,21 @@ def drawn_faces(layout: Layout, species: np.ndarray, position: np.ndarray) -> tu
             -found.away / layout.spacing,
         )
     return normal, depth
+
+
+def form_in(layout: Layout, number: int, rests: bool = True) -> Form:
+    """A part of the layout as it was drawn; one that ``rests`` among its images a period away."""
+    ends, still = (np.array(layout.lower), np.array(layout.upper)), Map.none(layout.dimensions)
+    form = form_of(layout.parts[number].shape).endless(*ends, layout.periods)
+    for step, period in zip(np.eye(layout.dimensions), layout.periods):
+        if rests and period is not None:
+            form = Union([Moved(form, still._replace(shift=k * period * step)) for k in (-1, 0, 1)])
+    return form
+
+
+def within_mirrors(layout: Layout) -> np.ndarray:
+    """The corners (2, dim), m, between which parts have faces: within mirrors."""
+    room = np.full((2, layout.dimensions), ((-FAR,), (FAR,)))
+    for plane in layout.mirror_planes:
+        room[int(plane.side != BELOW), plane.axis] = plane.at - plane.side * WITHIN * layout.spacing
+    return room

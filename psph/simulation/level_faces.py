@@ -10,15 +10,12 @@ much.
 
 import numpy as np
 
-from psph.composition.reflections import BELOW
 from psph.particles.named_rows import find_beside
 from psph.particles.neighbours import Neighbours
 from psph.physics.motion import deforms, is_rigid
 from psph.physics.rigid.pose import PLACE
-from psph.scene.forms.form import Form, Room
-from psph.scene.forms.joined import Union
-from psph.scene.forms.make import form_of
-from psph.scene.forms.placed import Map, Moved
+from psph.scene.faces import FAR, WITHIN, form_in, within_mirrors
+from psph.scene.forms.form import Room
 from psph.scene.levels import SHARE, SLOPE, Gaps, Levels
 from psph.scene.shapes import bounds
 from psph.work import Rank
@@ -26,12 +23,6 @@ from psph.work import Rank
 NEAR = 1.5
 """Supports of the coarsest level beside a band where levels share, farther from which no face is in it that a
 particle sees or is behind."""
-
-WITHIN = 1e-3
-"""Spacings from the ends of the domain within which a wall has no face: it goes on there."""
-
-FAR = 1e9
-"""A place beyond all faces, m."""
 
 
 class FaceShares:
@@ -55,7 +46,10 @@ class FaceShares:
         self._bare = np.array([deforms(one.motion) for one in species])
         faced = [] if self._loaded is None else self._loaded & ~self._bare
         self._faced = np.unique(self._origin_of[faced])
-        self._forms = {int(number): self._form(int(number)) for number in self._faced}
+        self._forms = {
+            number: form_in(self._layout, number, self._pose_of[number] < 0)
+            for number in map(int, self._faced)
+        }
         self._maps: np.ndarray | None = None
         self.places = np.zeros((0, 0, 0))
 
@@ -148,28 +142,14 @@ class FaceShares:
         way = np.where(np.isfinite(faces.away), -faces.away, 0.0)
         return np.abs(faces.away), points + way[:, None] * normal, normal
 
-    def _form(self, number: int) -> Form:
-        """A part of the layout as it was drawn; one that rests among its images a period away."""
-        layout = self._layout
-        ends, still = (np.array(layout.lower), np.array(layout.upper)), Map.none(layout.dimensions)
-        form = form_of(layout.parts[number].shape).endless(*ends, layout.periods)
-        if self._pose_of[number] >= 0:
-            return form
-        for step, period in zip(np.eye(layout.dimensions), layout.periods):
-            if period is not None:
-                form = Union([Moved(form, still._replace(shift=k * period * step)) for k in (-1, 0, 1)])
-        return form
-
     def _room(self, moves: bool) -> Room:
         """Where a wall has faces, or one that ``moves`` as it was drawn: within mirrors, and if it rests
         within the open ends of the domain."""
-        layout, within = self._layout, WITHIN * self._layout.spacing
-        room = np.full((2, layout.dimensions), ((-FAR,), (FAR,)))
+        layout, within, room = self._layout, WITHIN * self._layout.spacing, within_mirrors(self._layout)
         for d, period in enumerate(layout.periods):
             if period is None and not moves:
-                room[:, d] = layout.lower[d] + within, layout.upper[d] - within
-        for plane in layout.mirror_planes:
-            room[int(plane.side != BELOW), plane.axis] = plane.at - plane.side * within
+                ends = layout.lower[d] + within, layout.upper[d] - within
+                room[:, d] = np.where(np.abs(room[:, d]) < FAR, room[:, d], ends)
         return room[0], room[1]
 
 

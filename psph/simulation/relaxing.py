@@ -101,9 +101,8 @@ def relaxed(scene, found: ParticleSet, comm) -> ParticleSet:
     """The particles ``found`` of a scene, of which each rank has a part: those of fluids that relax, and of
     all that flows those beside fitted walls and bodies, are where they come to stand, on whichever rank, with
     the state that the scene has there; collective."""
-    layout = scene.layout
-    moving, along = np.isin(found.material, relaxing(layout)), fitted_parts(layout)
-    parts = relaxing(layout)
+    layout, parts = scene.layout, relaxing(scene.layout)
+    moving, along = np.isin(found.material, parts), fitted_parts(layout)
     if along:
         parts = [part.number for part in layout.parts if part.flows]
         flows = np.flatnonzero(np.isin(found.material, parts) & ~moving)

@@ -11,9 +11,9 @@ from runs.resuming import go_on_alike, keep, steps, taken_up
 
 from psph.case import load
 from psph.output.gauges import gauges_of
-from psph.scene import Scene
+from psph.scene import Scene, faces
 from psph.scene.levels import SHARE, SLOPE
-from psph.simulation import level_faces, levels
+from psph.simulation import levels
 from psph.simulation.level_faces import FaceShares
 
 BOX = """
@@ -252,7 +252,7 @@ def test_water_lifts_a_block_by_its_weight_at_the_end_of_a_period(tmp_path):
 def test_a_side_at_the_end_of_a_period_that_is_no_face_has_wrong_shares(tmp_path, monkeypatch):
     """The control: as at the open ends of a domain, where a wall goes on."""
     monkeypatch.setattr(FaceShares, "_room", lambda found, moves: (np.full(2, 1e-4), np.array([1.2, 1.0])))
-    monkeypatch.setattr(level_faces, "Union", lambda images: images[1].of)
+    monkeypatch.setattr(faces, "Union", lambda images: images[1].of)
     assert abs(lift(tmp_path, "", ROUND)[1] - 0.75) > 0.01
 
 
