@@ -31,6 +31,7 @@ from psph.physics.fluid.pressure import (
 )
 from psph.physics.fluid.viscosity import ArtificialViscosity, ImpactDamping, PairDamping
 from psph.physics.fluid.weight import InFrame, Steady
+from psph.physics.gas.conduction import Conduction, OfOneGamma, OfPressure
 from psph.physics.gas.pressure import OfUnlikeMasses
 from psph.physics.motion import Fixed
 from psph.physics.order.potential import neutral_potential
@@ -57,14 +58,15 @@ TransportVelocity, GeneralisedTransportVelocity = map(
 
 def made(effect, dim):
     """An instance with its defaults, or with a number or vector where it asks for one; of anvils, one that most
-    particles have come too near to; of those of a gas, one with the kernel that a scene would give it."""
+    particles have come too near to; of those of a gas, one with the kernel and the conduction that a scene would give it."""
     if effect is Anvils:
         return Anvils((((0.3, -0.8, 0.3)[:dim], (0.6, 0.8, 0.0)[:dim]),), 2.0, 50.0)
     hints = get_type_hints(effect)
     needed = [n for n in effect._fields if n not in effect._field_defaults]
     vector = (0.3, -9.8, 0.3)[:dim]
     unit = kernel("wendland-c2", 1.0, dim)
-    given = {"kernel": unit, "form": OfUnlikeMasses(unit)}
+    spread = Conduction(0.7, OfPressure(), OfOneGamma())
+    given = {"kernel": unit, "form": OfUnlikeMasses(unit), "spread": spread}
     told = {n: given[n] for n, default in effect._field_defaults.items() if default is None}
     return effect(*(vector if get_origin(hints[n]) is tuple else 0.7 for n in needed), **told)
 
