@@ -89,6 +89,13 @@ class Time(Table):
         "half of the step and one for forces at its end, where all that is in the scene bears it",
         1,
     )
+    lead: float = key(
+        "in two passes: pressures are those of the densities so many steps later, by which sound fades",
+        0.0,
+        unit="steps",
+        ge=0,
+        le=0.25,
+    )
     gather_every: int = key(
         "corrected gradients and other slow sums are renewed every so many passes", 1, ge=1
     )

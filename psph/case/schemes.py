@@ -11,6 +11,8 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "space.kernel": "wendland-c2",
         "space.smoothing": 1.4,
         "time.cfl": 0.5,
+        "time.passes": 2,
+        "time.lead": 0.05,
         "time.gather_every": 8,
         "physics.pressure_gradient": "symmetric",
         "physics.gradient_correction": 0.7,

@@ -33,11 +33,13 @@ def plan_warnings(scene, plan: Plan, ranks: int) -> Iterator[str]:
 
 def _served_in_vain(scene, plan: Plan) -> Iterator[str]:
     time = scene.case.time
-    if time.passes == 2 and not plan.midway:
+    if time.passes == 2 and not plan.midway and not scene.case.preset("time.passes"):
         yield (
             "time.passes: 2 does nothing: not all that is in the scene bears it, so steps have one pass; "
             "remove it"
         )
+    if time.lead and not plan.midway and not scene.case.preset("time.lead"):
+        yield f"time.lead: {time.lead:g} does nothing in steps of one pass; set time.passes = 2, or remove it"
     if time.damping_every > plan.rate_passes and not _bears_held(plan):
         yield (
             f"time.damping_every: {time.damping_every} does nothing: what is in the scene needs friction in "

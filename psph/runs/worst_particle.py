@@ -23,8 +23,8 @@ SEEN = 6.0
 class Share(NamedTuple):
     """What one effect does to a particle: m/s², kg/(m^d s), and the speed of a displacement, m/s.
 
-    All are those at the end of the step: one of two passes (psph.simulation.midway) has changed the density
-    by the rate at its middle instead.
+    All are those at the end of the step, by the pressure of its forces: one of two passes
+    (psph.simulation.midway) has changed the density by the rate at its middle instead.
     """
 
     name: str
@@ -38,7 +38,8 @@ class Suspect(NamedTuple):
     none of one that follows others.
 
     ``offset`` (n, dim) is where they stand as seen from it, m; ``column`` its own place there; ``scene`` has
-    the spacing and the kernel of its ``level`` of sizes; ``follow`` tells who around it follows others.
+    the spacing and the kernel of its ``level`` of sizes; ``follow`` tells who around it follows others;
+    a step takes so many ``passes``.
     """
 
     id: int
@@ -50,6 +51,7 @@ class Suspect(NamedTuple):
     scene: Any
     level: int
     follow: np.ndarray
+    passes: int
 
     def value(self, name: str):
         """A field of the particle itself: a number, or (dim,)."""
@@ -116,7 +118,7 @@ def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
         others = sum((one.acceleration for one in shares), np.zeros(scene.dimensions))
         inner = around.shown("acceleration")[column] - others
         shares = (*shares, Share(INNER, inner, 0.0, np.zeros(scene.dimensions)))
-    return Suspect(-least, place, around, offset, column, shares, scene, level, follow)
+    return Suspect(-least, place, around, offset, column, shares, scene, level, follow, plan.rate_passes)
 
 
 def _places(store: Store) -> np.ndarray:

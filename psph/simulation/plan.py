@@ -115,6 +115,8 @@ class Plan:
     renewed: tuple[str, ...]
     """What ghosts need of it that kinds of matter fill anew just before the sums."""
     cfl: float
+    lead: float
+    """By how many steps pressures are ahead of the density (psph.simulation.midway)."""
     fixed_step: float | None
     extremes: Any
     """The scene's shared values, and the largest of those that differ by material."""
@@ -380,6 +382,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         loads=next((how for kind in matter if (how := kind.loads(passes))), Loads),
         renewed=tuple(name for name in refreshed if name in renewed),
         cfl=case.time.cfl * rate_passes,
+        lead=case.time.lead if midway else 0.0,
         fixed_step=case.time.step,
         extremes=extremes,
         kept=kept_in_frames(scene, stored),

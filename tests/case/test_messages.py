@@ -34,7 +34,7 @@ FAULTS = {
     ),
     "a key that resembles none": (
         replaced("end = 2.0", "end = 2.0\nqqq = 1"),
-        "time.qqq: unknown key; known here: end, cfl, passes, gather_every, damping_every, halvings, step",
+        "time.qqq: unknown key; known here: end, cfl, passes, lead, gather_every, damping_every, halvings, step",
     ),
     "a key below the wrong table": (
         WATER + "end = 1.0\n",

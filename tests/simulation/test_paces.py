@@ -33,8 +33,8 @@ ALL = (*HELD, HELD_COUPLE.name)
 
 
 def every(steps, tables=STIRRED, **time):
-    """The scene with damping in every so many steps."""
-    return {**tables, "time": {**tables["time"], **time, "damping_every": steps}}
+    """The scene with damping in every so many steps, of one pass."""
+    return {**tables, "time": {**tables["time"], "passes": 1, **time, "damping_every": steps}}
 
 
 def rates(simulation):

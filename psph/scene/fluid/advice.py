@@ -17,7 +17,7 @@ FASTER = 2.0
 def fluid_advice(scene, guard: str, suspect) -> Iterator[str]:
     """Things to try, the most promising first."""
     yield from _driven(scene, guard, suspect)
-    yield from _long_step(scene)
+    yield from _long_step(scene, suspect.passes)
     yield from _scheme(scene)
     yield from _pressure(scene, suspect)
     yield from _walls(scene, guard, suspect)
@@ -35,10 +35,10 @@ def _driven(scene, guard: str, suspect) -> Iterator[str]:
         )
 
 
-def _long_step(scene) -> Iterator[str]:
+def _long_step(scene, passes: int) -> Iterator[str]:
     step, cfl = scene.case.time.step, scene.case.time.cfl
     h = finest_of(scene).smoothing_length
-    limit = scene.case.time.passes * cfl * h / (scene.sound_speed + scene.expected_speed)
+    limit = passes * cfl * h / (scene.sound_speed + scene.expected_speed)
     if step is not None and step > limit:
         yield f"remove time.step = {step:g}: time.cfl = {cfl:g} would allow {limit:.2g} s"
 
