@@ -74,12 +74,13 @@ def find_undecided(first, last, low, lists, reach, periods, listed, group, serve
         bears = fluid[k] == 0.0 and own.any()
         while bears and not held and n < end:
             j = np.uint64(lists.lists[n])
-            x = nearest_image(subtract(at(listed, k), at(listed, j)), periods)
-            near = fluid[j] > 0.0 and reach > 0.0 and dot(x, x) < reach * reach
-            serves_it = own[np.uint64(fluid[j])]
-            some, served = some or fluid[j] > 0.0, served or serves_it
-            held = near and serves_it and wet[k] >= WET
-            beside = beside or near
+            if fluid[j] > 0.0:  # most of what a dry wall lists is wall
+                x = nearest_image(subtract(at(listed, k), at(listed, j)), periods)
+                near = reach > 0.0 and dot(x, x) < reach * reach
+                serves_it = own[np.uint64(fluid[j])]
+                some, served = True, served or serves_it
+                held = near and serves_it and wet[k] >= WET
+                beside = beside or near
             n += np.uint64(1)
         held = held or beside and not served and wet[k] == BESIDE_OTHERS
         undecided[row] = bears and not held and (some or wet[k] > DRY)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.parallel.domain import Domain
 from psph.particles.reach import Reach
@@ -33,6 +34,9 @@ class Wetting:
         self._serves = np.array([effect.served(one, species) for one in species])
         self._undecided = self._loaded = np.zeros(0, np.uint64)
         self._rows = DryRows(np.zeros(0, np.uint32), np.zeros(0, bool))
+        self._find_undecided, self._find_resting = settled(find_undecided), settled(find_resting)
+        self._find_beside, self._find_felt = settled(find_beside_fluid), settled(find_felt)
+        self._mark_wet = settled(mark_wet)
 
     def settle(self) -> None:
         """Lists are new, or taken up: the rows of dry walls become empty."""
@@ -42,12 +46,12 @@ class Wetting:
             DryRows(lists.lengths.copy(), np.zeros(s.owned, bool)),
         )
         safe, wet = 2.0 * self.reach.support - self.domain.reach, s[self.effect.marks.name]
-        self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
+        self._each(self._find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
-        self._each(find_resting, s.group, materials.free, self._rows.rest)
+        self._each(self._find_resting, s.group, materials.free, self._rows.rest)
         if materials.loaded is not None and not self.plan.finer:
             beside = np.zeros(s.owned, bool)
-            self._each(find_beside_fluid, materials.loaded, s.group, s[self.effect.told_by], beside)
+            self._each(self._find_beside, materials.loaded, s.group, s[self.effect.told_by], beside)
             self._loaded = np.uint64(s.low) + np.flatnonzero(beside & self._rows.rest).astype(np.uint64)
         lists.lengths[: s.owned][self._rows.rest & (wet[s.inner] == 0.0)] = 0
 
@@ -68,7 +72,7 @@ class Wetting:
         walls = walls[s[self.effect.marks.name][walls] == 0.0]
         felt, reach = np.zeros(len(walls), bool), (self.reach.support, self.domain.periods)
         seen = s["position"], s[self.effect.told_by]
-        in_threads(find_felt, 0, len(walls), walls, s.low, self.domain.lists, lengths, *reach, *seen, felt)
+        in_threads(self._find_felt, 0, len(walls), walls, s.low, self.domain.lists, lengths, *reach, *seen, felt)
         return walls[felt], lengths
 
     @property
@@ -85,7 +89,7 @@ class Wetting:
     def _mark(self, walls: np.ndarray) -> None:
         s, reach = self.store, (self.reach.support, self.domain.periods)
         rest = s.low, self.domain.lists, self._rows, *reach, s["position"], *self._kinds
-        in_threads(mark_wet, 0, len(walls), walls, *rest)
+        in_threads(self._mark_wet, 0, len(walls), walls, *rest)
 
     def _each(self, loop, *args) -> None:
         s = self.store

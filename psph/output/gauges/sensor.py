@@ -36,6 +36,15 @@ class SensorFace(NamedTuple):
     inwards: np.ndarray
     area: float
 
+    def columns(self, simulation) -> tuple[int, int]:
+        """The first of a rank's own particles, and that after the last, between which all stand that started in
+        the box, where they stay."""
+        axis, low = simulation.domain.axis, simulation.store.low
+        half = 0.5 * self.spacing * self.shares.shape[axis]
+        middle = self.lowest[axis] + half - 0.5 * self.spacing
+        first, last = simulation.neighbourhood.columns_across(middle, half + self.spacing)
+        return first - low, last - low
+
     def shares_of(self, places: np.ndarray, periods) -> np.ndarray:
         """Of particles that started at ``places`` (n, dim), m; zeros beyond the box."""
         sites = np.empty(places.shape, np.int64)
@@ -80,7 +89,8 @@ class SensorGauge(NamedTuple):
     def _of_face(self, simulation, face: SensorFace) -> np.ndarray:
         """What presses on the walls of one spacing, Pa."""
         store, poses = simulation.store, simulation.engine.poses
-        own = np.flatnonzero(store.of_groups(face.groups))
+        first, last = face.columns(simulation) if self.carrier is None else (0, store.owned)
+        own = first + np.flatnonzero(store.of_groups(face.groups)[first:last])
         places, inwards = store.shown("position")[own], face.inwards
         periods = simulation.domain.periods
         if self.carrier is not None:
