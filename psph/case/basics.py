@@ -84,9 +84,10 @@ class Time(Table):
     cfl: float = key(
         "time step in units of h/(c + largest speed), for each of its passes", 0.2, unit="1", gt=0, le=0.5
     )
-    passes: Literal[1, 2] = key(
+    passes: Literal[1, 2, "auto"] = key(
         "passes over the neighbours that a step takes: one for all rates, or one for the rate of density at "
-        "half of the step and one for forces at its end, where all that is in the scene bears it",
+        "half of the step and one for forces at its end, where all that is in the scene bears it; auto: two "
+        "where steps are that much longer by it",
         1,
     )
     lead: float = key(
@@ -94,7 +95,7 @@ class Time(Table):
         0.0,
         unit="steps",
         ge=0,
-        le=0.25,
+        le=0.1,
     )
     gather_every: int = key(
         "corrected gradients and other slow sums are renewed every so many passes", 1, ge=1

@@ -11,7 +11,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "space.kernel": "wendland-c2",
         "space.smoothing": 1.4,
         "time.cfl": 0.5,
-        "time.passes": 2,
+        "time.passes": "auto",
         "time.lead": 0.05,
         "time.gather_every": 8,
         "physics.pressure_gradient": "symmetric",

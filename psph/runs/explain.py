@@ -176,8 +176,8 @@ def _pass_lines(scene, plan: Plan, said: dict[str, list[str]]) -> Iterator[str]:
     if plan.passes:
         flops = plan.flops_per_pair(scene.layout.periods)
         often = "one at the middle of a step for the density, one at its end" if plan.midway else "one a step"
-        if scene.case.time.passes == 2 and not plan.midway:
-            often += ", since not all that is in the scene bears two"
+        if scene.case.time.passes != 1 and not plan.midway:
+            often += ", since not all that is in the scene bears two, or they gain nothing"
         yield f"Pass over the neighbours, {often}, {flops} flops a pair"
     yield from said["passes"]
 

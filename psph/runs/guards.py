@@ -24,7 +24,7 @@ from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
 from psph.work import Work
 
 EVERY = 100
-"""Steps from one look behind the walls and at the energy to the next."""
+"""Passes that give rates, as many steps or half of them, from one look behind the walls and at the energy to the next."""
 
 STOP, CLOCK, DEPTH, OVERLAP = "stop", "clock", "depth", "overlap"
 
@@ -144,7 +144,7 @@ class Guards:
             yield "speed"
         if stiff and simulation.strain > bounds.density:
             yield "density"
-        if simulation.passed(EVERY):
+        if simulation.passed(EVERY // simulation.plan.rate_passes):
             with simulation.ledger("guards"):
                 slow = [
                     (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),

@@ -33,7 +33,7 @@ def plan_warnings(scene, plan: Plan, ranks: int) -> Iterator[str]:
 
 def _served_in_vain(scene, plan: Plan) -> Iterator[str]:
     time = scene.case.time
-    if time.passes == 2 and not plan.midway and not scene.case.preset("time.passes"):
+    if time.passes == 2 and not plan.midway:
         yield (
             "time.passes: 2 does nothing: not all that is in the scene bears it, so steps have one pass; "
             "remove it"

@@ -190,10 +190,12 @@ class Engine:
 
     def settle_pressure(self, largest_speed: float, ranges: Iterable[tuple[int, int]] | None = None) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them, of some
-        ``ranges`` of columns or of all."""
+        ``ranges`` of columns or of all.  After a step of two passes they stand there: the pressure of its
+        forces, which the next step reads."""
         every = [(self.store.low, self.store.low + self.store.owned)]
         for first, last in every if ranges is None else ranges:
-            self.bear(first, last, largest_speed)
+            if not self.plan.midway:
+                self.bear(first, last, largest_speed)
         for kind in self.kinds:
             kind.measure()
 

@@ -24,6 +24,7 @@ from psph.composition.pair import take
 from psph.composition.terms import displacement, limit_density, limit_wall_density
 from psph.engine.jit import elementwise, inside
 from psph.fields import DENSITY_RATE_1, DENSITY_RATE_2, filled
+from psph.moments import fastest_wave
 from psph.simulation.carried import carry, store_apparent_force
 from psph.simulation.rules import borne
 from psph.vectors import add, at, put, scale
@@ -32,14 +33,56 @@ HISTORY = (DENSITY_RATE_1, DENSITY_RATE_2)
 """What a step of one pass keeps of earlier ones, and this one does not."""
 
 
-def is_midway(scene, effects, kinds) -> bool:
+FASTEST = 1.16
+"""ωΔt of the fastest sound on the lattice in a step with a lead, at the most.  The default scheme has 1.12 in 2D
+and 1.15 in 3D; at 1.35 still water boils."""
+
+WORTH = 1.6
+"""A step of two passes takes so many times as long as one of one pass."""
+
+
+def is_midway(scene, effects, kinds, extremes) -> bool:
     """Whether the steps of a scene take their rate of density at the middle.
 
     Where ``time.passes`` asks for two, all kinds of matter bear it, and none of the ``effects`` evolves a
-    field of its own, whose rate would have to be taken there too.
+    field of its own, whose rate would have to be taken there too; by itself only where that pays.
     """
+    effects, passes = tuple(effects), scene.case.time.passes
     evolve = (field.evolves for effect in effects for field in filled(effect))
-    return scene.case.time.passes == 2 and all(kind.bears_midway for kind in kinds) and not any(evolve)
+    if passes == 1 or not all(kind.bears_midway for kind in kinds) or any(evolve):
+        return False
+    return passes == 2 or _pays(scene, effects, extremes)
+
+
+def cfl_of(scene, passes: int) -> float:
+    """The longest step of so many ``passes`` over h/(c + max|v|): ``time.cfl`` for each, of two with a lead no
+    longer than the fastest sound bears."""
+    cfl = scene.case.time.cfl * passes
+    if passes == 1 or not scene.case.time.lead:
+        return cfl
+    fastest = fastest_wave(scene.kernel, scene.spacing, scene.dimensions)
+    return min(cfl, FASTEST / (scene.smoothing_length * fastest))
+
+
+def _pays(scene, effects: tuple, extremes) -> bool:
+    """Whether steps of two passes are so much longer that they cost less: not where friction limits them.
+
+    Held rates of friction (psph.simulation.paces) shorten them, so these go with one pass.
+    """
+    one, two = (_longest(scene, effects, extremes, passes) for passes in (1, 2))
+    fixed = scene.case.time.step
+    if scene.case.time.damping_every > 1:
+        return False
+    return fixed > one if fixed else two > WORTH * one
+
+
+def _longest(scene, effects: tuple, extremes, passes: int) -> float:
+    """The longest step of so many ``passes`` that sound and the ``effects`` allow at rest, s."""
+    limited = [effect for effect in effects if hasattr(effect, "longest_step")]
+    frictions = [effect.longest_step(extremes) for effect in limited if pushes(effect)]
+    limits = [room(effect, passes) * effect.longest_step(extremes) for effect in limited]
+    limits += [together(frictions)] * (passes == 2)
+    return min(cfl_of(scene, passes) * scene.smoothing_length / extremes.sound_speed, *limits)
 
 
 FORCES = ("radial", "shear", "push", "body", "finish_acceleration")
@@ -112,7 +155,10 @@ def drift_to_end(first, last, time, dt, rules, view, columns):
             put(c.position, k, add(at(c.position, k), half_a_move(rules, i, v, dt)))
             rho, ahead = limit_density(rules.effects, i, rho), limit_density(rules.effects, i, ahead)
         else:
-            rho, ahead = limit_wall_density(rules.effects, i, rho), limit_wall_density(rules.effects, i, ahead)
+            rho, ahead = (
+                limit_wall_density(rules.effects, i, rho),
+                limit_wall_density(rules.effects, i, ahead),
+            )
             carry(rules, group, k, time, c)
         store_apparent_force(rules, group, k, time, dt, c)
         c.density[k] = rho

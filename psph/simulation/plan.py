@@ -32,7 +32,7 @@ from psph.scene.gauging import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import limits_of_effects, step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
-from psph.simulation.midway import HISTORY, is_midway
+from psph.simulation.midway import HISTORY, cfl_of, is_midway
 from psph.simulation.movement import carried_fields
 from psph.simulation.paces import held_fields, held_parts, is_held, steps_held
 from psph.simulation.passes import Pass, array_of, make_passes
@@ -296,7 +296,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         *(getattr(scene, name) for name in OF_SCENE),
         *(max(material_value(m, f.name) for m in species) for f in OF_MATERIAL),
     )
-    midway = is_midway(scene, [effect for _, effect, _ in fitted], matter)
+    midway = is_midway(scene, [effect for _, effect, _ in fitted], matter, extremes)
     rate_passes = 2 if midway else 1
     hold_for = steps_held(scene, [effect for _, effect, _ in fitted], extremes, matter, rate_passes)
     if hold_for > 1:
@@ -381,7 +381,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         matter=matter,
         loads=next((how for kind in matter if (how := kind.loads(passes))), Loads),
         renewed=tuple(name for name in refreshed if name in renewed),
-        cfl=case.time.cfl * rate_passes,
+        cfl=cfl_of(scene, rate_passes),
         lead=case.time.lead if midway else 0.0,
         fixed_step=case.time.step,
         extremes=extremes,

@@ -140,7 +140,7 @@ class Simulation:
         return self.engine.bytes_held()
 
     def settle_pressure(self, ranges: Iterable[tuple[int, int]] | None = None) -> None:
-        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them, of some
+        """Pressure and 1/ρ at the end of the step, for whoever reads them, of some
         ``ranges`` of columns, from one to before another, or of all."""
         self.engine.settle_pressure(self.previous_speed, ranges)
 

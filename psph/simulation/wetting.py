@@ -46,7 +46,9 @@ class Wetting:
             DryRows(lists.lengths.copy(), np.zeros(s.owned, bool)),
         )
         safe, wet = 2.0 * self.reach.support - self.domain.reach, s[self.effect.marks.name]
-        self._each(self._find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
+        self._each(
+            self._find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided
+        )
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
         self._each(self._find_resting, s.group, materials.free, self._rows.rest)
         if materials.loaded is not None and not self.plan.finer:
@@ -72,7 +74,9 @@ class Wetting:
         walls = walls[s[self.effect.marks.name][walls] == 0.0]
         felt, reach = np.zeros(len(walls), bool), (self.reach.support, self.domain.periods)
         seen = s["position"], s[self.effect.told_by]
-        in_threads(self._find_felt, 0, len(walls), walls, s.low, self.domain.lists, lengths, *reach, *seen, felt)
+        in_threads(
+            self._find_felt, 0, len(walls), walls, s.low, self.domain.lists, lengths, *reach, *seen, felt
+        )
         return walls[felt], lengths
 
     @property

@@ -162,7 +162,7 @@ FAULTS = {
     ),
     "a number that is none of a choice": (
         replaced("end = 2.0", "end = 2.0\npasses = 0"),
-        "time.passes: 0 is not known; known here: 1, 2",
+        "time.passes: 0 is not known; known here: 1, 2, auto",
     ),
     "an unknown choice of effect": (
         replaced("[physics]", '[physics]\npressure_gradient = "antisymetric"'),

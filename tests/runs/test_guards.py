@@ -251,7 +251,9 @@ def test_the_shares_add_up_to_what_moved_the_particle(name, tmp_path):
         rates = [share.density_rate for share in suspect.shares]
         largest = max(map(abs, rates))
         assert largest > 0.0 and suspect.passes == 1 + (name == "two passes")
-        assert suspect.passes == 2 or sum(rates) == pytest.approx(suspect.value("density_rate"), abs=1e-6 * largest)
+        assert suspect.passes == 2 or sum(rates) == pytest.approx(
+            suspect.value("density_rate"), abs=1e-6 * largest
+        )
 
 
 def test_the_term_that_pushed_hardest_is_the_one_that_was_made_strong(tmp_path):

@@ -6,6 +6,8 @@ from invariances.running import begun, by_id
 from invariances.scenes import BLOCK, DX, PULL, SCENES, WATER, scene, shifts, water
 from scipy.spatial import cKDTree
 from simulation.test_integrator import RULES, oscillate
+from drafts import draft
+from gauging import start
 from simulation.test_paces import STIRRED
 from stores import seen
 
@@ -14,7 +16,9 @@ from psph.runs.explain import explain
 from psph.runs.hints import plan_warnings
 from psph.scene import Scene
 from psph.simulation.integrator import kick
+from psph.simulation import midway
 from psph.simulation.midway import HISTORY, drift_to_end, kick_to_middle
+from psph.simulation.plan import make_plan
 from psph.simulation.rules import Columns
 
 
@@ -137,6 +141,72 @@ def test_what_is_written_changes_no_bit(tmp_path):
     assert np.array_equal(by_id(unseen, "velocity"), by_id(shown, "velocity"))
 
 
+DAM = """
+space = { dimensions = 2, spacing = 0.05 }
+time.end = 0.5
+physics.sound_speed = 45.0
+physics.gravity = [0.0, -9.8]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [0.5, 1.0] }
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.15, -0.15], upper = [2.15, 2.0] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [2.0, 2.0] } }]
+"""
+
+
+def test_nor_does_it_where_pressures_are_ahead(tmp_path):
+    """Walls give no density to where they bear no pressure: by that of the density, and not that ahead of it, water
+    went elsewhere by a spacing and a half in half a second, and on other ranks."""
+    unseen, shown = (start(draft(tmp_path, DAM)) for _ in range(2))
+    assert unseen.plan.midway and unseen.plan.lead > 0.0
+    while unseen.time < 0.45:
+        unseen.step()
+        shown.step()
+        shown.settle_pressure()
+    assert np.array_equal(by_id(unseen, "velocity"), by_id(shown, "velocity"))
+    assert np.abs(by_id(unseen, "velocity")).max() > 2.0  # it falls
+
+
+def test_the_default_takes_two_passes_where_they_pay(tmp_path):
+    """Not where friction limits a step, where a fixed one is short, or where rates of friction are held."""
+    for passes, *sets in (
+        (2,),
+        (1, "fluids.water.viscosity=0.5"),
+        (1, "time.step=1e-4"),
+        (2, "time.step=1.2e-3"),
+        (1, "time.damping_every=4"),
+        (2, "time.damping_every=4", "time.passes=2"),
+    ):
+        plan = make_plan(Scene(draft(tmp_path, DAM, *sets)))
+        assert plan.rate_passes == passes, sets
+        assert (plan.lead > 0.0) == (passes == 2)
+
+
+STILL = (
+    "fluids.water.shape.box={ lower=[0.0, 0.0], upper=[2.0, 1.0] }",
+    "space.kernel=wendland-c4",
+    "space.smoothing=1.6",
+)
+DEEP = (
+    "walls.tank.shape.difference.from.box={ lower=[-0.3, -0.3], upper=[2.3, 2.0] }",
+    "walls.tank.shape.difference.minus=[{ box={ lower=[0.0, 0.0], upper=[2.0, 2.0] } }]",
+)
+
+
+def test_a_lead_asks_for_shorter_steps_where_sound_is_faster_on_the_lattice(tmp_path, monkeypatch):
+    """Still water, by Wendland C4, whose fastest sound is a sixth faster than C2's.  The control: as long steps as
+    C2 bears, and it boils."""
+    speeds = []
+    for fastest in (midway.FASTEST, 10.0):
+        monkeypatch.setattr(midway, "FASTEST", fastest)
+        still = start(draft(tmp_path, DAM, *STILL, *DEEP))
+        while still.time < 2.0:
+            still.step()
+        speeds.append(np.abs(by_id(still, "velocity")).max())
+    assert speeds[0] < 0.05 and speeds[1] > 0.2
+
+
 def test_lists_made_at_the_middle_of_a_step_stand_shifts_to_its_end(tmp_path):
     """In disorder that drifts, where shifts are what moves neighbours apart; 1.2 of the skin where the whole shift
     came in the second half of a step."""
@@ -171,9 +241,8 @@ def test_it_asks_for_no_history_and_sends_no_more_than_what_has_moved(tmp_path):
 def test_what_moves_by_more_than_rates_and_poses_keeps_one_pass(tmp_path, name):
     plan = begun(in_two(SCENES[name]), tmp_path).plan
     scene = Scene(load(tmp_path / "case.toml"))
-    told = [*plan_warnings(scene, plan, 1)]
-    assert len(told) == (scene.case.scheme != "stable")  # that asks for two where a scene bears them
-    assert not told or "time.passes: 2 does nothing: not all that is in the scene bears it" in told[0]
-    why = "one a step, since not all that is in the scene bears two"
+    [told] = plan_warnings(scene, plan, 1)
+    assert "time.passes: 2 does nothing: not all that is in the scene bears it" in told
+    why = "one a step, since not all that is in the scene bears two, or they gain nothing"
     assert (why in "\n".join(explain(scene, 1))) == (name == "soil")  # solids alone have no pass in space
     assert plan.midway is None and plan.cfl == SCENES[name]["time"].get("cfl", plan.cfl)
