@@ -24,7 +24,8 @@ from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
 from psph.work import Work
 
 EVERY = 100
-"""Passes that give rates, as many steps or half of them, from one look behind the walls and at the energy to the next."""
+"""Passes that give rates, so many steps or half as many, from one look behind the walls and at the energy to
+the next."""
 
 STOP, CLOCK, DEPTH, OVERLAP = "stop", "clock", "depth", "overlap"
 

@@ -9,10 +9,10 @@
 Density and velocity leap over each other, so sound neither grows nor decays for ωΔt < 2, where a step of one
 pass (psph.simulation.integrator) is stable to 0.78.  With a ``lead`` ε the pressure is that of the density ε
 steps later: sound loses ½ε(ωΔt)² of its amplitude a step, as by a bulk viscosity εc²Δt, which what keeps its
-density does not feel, for no sum more; stable for (1 + 2ε)(ωΔt)² < 4.  What moves all as one, or turns, keeps its density: x½
-is the middle of the chord from x to the new x, and v½ its length over Δt.  What moves as a whole goes along
-chords too; walls that deform stand where their motion has them.  A shift beside the velocity is halved as the
-drift is.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
+density does not feel, for no sum more; stable for (1 + 2ε)(ωΔt)² < 4.  What moves all as one, or turns,
+keeps its density: x½ is the middle of the chord from x to the new x, and v½ its length over Δt.  What moves
+as a whole goes along chords too; walls that deform stand where their motion has them.  A shift beside the
+velocity is halved as the drift is.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
 """
 
 import math
@@ -34,8 +34,8 @@ HISTORY = (DENSITY_RATE_1, DENSITY_RATE_2)
 
 
 FASTEST = 1.16
-"""ωΔt of the fastest sound on the lattice in a step with a lead, at the most.  The default scheme has 1.12 in 2D
-and 1.15 in 3D; at 1.35 still water boils."""
+"""ωΔt of the fastest sound on the lattice in a step with a lead, at the most.  The default scheme has 1.12 in
+2D and 1.15 in 3D; at 1.35 still water boils."""
 
 WORTH = 1.6
 """A step of two passes takes so many times as long as one of one pass."""
@@ -55,8 +55,8 @@ def is_midway(scene, effects, kinds, extremes) -> bool:
 
 
 def cfl_of(scene, passes: int) -> float:
-    """The longest step of so many ``passes`` over h/(c + max|v|): ``time.cfl`` for each, of two with a lead no
-    longer than the fastest sound bears."""
+    """The longest step of so many ``passes`` over h/(c + max|v|): ``time.cfl`` for each, of two with a lead
+    no longer than the fastest sound bears."""
     cfl = scene.case.time.cfl * passes
     if passes == 1 or not scene.case.time.lead:
         return cfl

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from drafts import draft
+from gauging import start
 from invariances.running import begun, by_id
 from invariances.scenes import BLOCK, DX, PULL, SCENES, WATER, scene, shifts, water
 from scipy.spatial import cKDTree
 from simulation.test_integrator import RULES, oscillate
-from drafts import draft
-from gauging import start
 from simulation.test_paces import STIRRED
 from stores import seen
 
@@ -15,8 +15,8 @@ from psph.case import load
 from psph.runs.explain import explain
 from psph.runs.hints import plan_warnings
 from psph.scene import Scene
-from psph.simulation.integrator import kick
 from psph.simulation import midway
+from psph.simulation.integrator import kick
 from psph.simulation.midway import HISTORY, drift_to_end, kick_to_middle
 from psph.simulation.plan import make_plan
 from psph.simulation.rules import Columns

@@ -37,8 +37,8 @@ class SensorFace(NamedTuple):
     area: float
 
     def columns(self, simulation) -> tuple[int, int]:
-        """The first of a rank's own particles, and that after the last, between which all stand that started in
-        the box, where they stay."""
+        """The first of a rank's own particles, and that after the last, between which all stand that started
+        in the box, where they stay."""
         axis, low = simulation.domain.axis, simulation.store.low
         half = 0.5 * self.spacing * self.shares.shape[axis]
         middle = self.lowest[axis] + half - 0.5 * self.spacing
