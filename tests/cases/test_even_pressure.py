@@ -19,11 +19,13 @@ STEPS = 60
 
 
 def fastest():
-    """The largest speed in the box after some steps, over that of sound."""
+    """The largest speed in the box in any of some steps, over that of sound."""
     simulation, scene = started(load("run/cases/hard/box.toml", KEYS))
+    speeds = []
     for _ in range(STEPS):
         simulation.step()
-    return simulation.speed / scene.sound_speed
+        speeds.append(simulation.speed)
+    return max(speeds) / scene.sound_speed
 
 
 def test_it_stays_at_rest(monkeypatch):

@@ -330,6 +330,7 @@ def test_fluid_at_a_mirror_has_no_free_surface_there(tmp_path):
 def test_lists_last_shorter_where_particles_move_across_a_mirror(tmp_path):
     """All move as one, so nothing comes nearer but the images."""
     moving = (
+        "time.passes=1",
         "neighbours.skin=0.2",
         "fluids.water.velocity_gradient=off",
         "fluids.water.velocity=[-1.0, 0.0]",
