@@ -281,7 +281,7 @@ def test_penalty_walls_hold_still_water_at_the_limit_and_not_beyond(tmp_path):
             wild.step()
 
 
-TWICE_AFLOAT = {"slides": 3.0, "turns": 3.0, "sticks": 4.0}
+TWICE_AFLOAT = {"slides": 3.0, "turns": 3.0, "sticks": 5.0}
 AFLOAT = {
     "slides": ({"free": ["x", "y"]}, {}, {}, 3.0),
     "turns": ({"free": ["turn_z"], "pivot": [0.0, 0.1875]}, {}, {}, 2.5),
