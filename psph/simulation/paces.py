@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from psph.fields import HELD_ACCELERATION, HELD_DENSITY_RATE, Field
 from psph.physics.motion import HELD_COUPLE
-from psph.simulation.midway import pushes, room, together
+from psph.simulation.midway import cfl_of, pushes, room, together
 
 PACES = (8, 4, 2)
 """Steps for which they serve where their limits do not bear what is asked for."""
@@ -30,7 +30,7 @@ def steps_held(scene, effects: Iterable, extremes, kinds, rate_passes: int = 1) 
     if asked <= 1 or not all(kind.bears_held for kind in kinds):
         return 1
     limited = [one for one in effects if hasattr(one, "longest_step")]
-    sound = rate_passes * scene.case.time.cfl * scene.smoothing_length / extremes.sound_speed
+    sound = cfl_of(scene, rate_passes) * scene.smoothing_length / extremes.sound_speed
     free = [one for one in limited if not is_held(one)]
     rest = [sound, *(room(one, rate_passes) * one.longest_step(extremes) for one in free)]
     longest = scene.case.time.step or WORTH * min(rest)
