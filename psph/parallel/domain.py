@@ -342,7 +342,7 @@ class Domain:
         filled = np.diff(owned)
         # A neighbour sorts its plane by the same rule: its counts by cell are all that places its particles
         # here, where they come as one slice, in the owner's order.
-        below, above = self._trade_planes(filled[:per_plane], filled[-per_plane:])
+        below, above = self.trade_planes(filled[:per_plane], filled[-per_plane:])
         store.reorder(order, int(below.sum()), int(above.sum()))
         counts = np.concatenate([below, filled, above])
         self.starts = np.concatenate([[0], np.cumsum(counts)])
@@ -357,11 +357,12 @@ class Domain:
             int(filled[-per_plane:].sum()),
         )
 
-    def _trade_planes(self, lowest: np.ndarray, highest: np.ndarray):
-        """Cell counts of the ghost planes below and above, from the ranks that own them."""
-        below, above = np.zeros_like(lowest), np.zeros_like(highest)
+    def trade_planes(self, lowest: np.ndarray, highest: np.ndarray, none: float = 0):
+        """What the ranks that own the ghost planes below and above tell of these, as this one does of its
+        ``lowest`` and ``highest``; ``none`` of ghosts that there are not."""
+        below, above = np.full_like(lowest, none), np.full_like(highest, none)
         down, up = self._partner(-1), self._partner(1)
-        # At an open end nothing comes, and the counts stay zero: no ghosts there.
+        # At an open end nothing comes: no ghosts there.
         self.comm.Sendrecv(highest, up, recvbuf=below, source=down)
         self.comm.Sendrecv(lowest, down, recvbuf=above, source=up)
         return below, above

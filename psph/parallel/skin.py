@@ -26,23 +26,6 @@ most."""
 NEAR_PLANE = 1.5
 """Cutoffs from a mirror within which particles count as near it: whoever crosses it before new lists is."""
 
-REMEMBERED = (
-    "width",
-    "_served",
-    "drifted",
-    "_apart",
-    "_since",
-    "_closing",
-    "_beyond",
-    "_crossing",
-    "_acceleration",
-    "_shift",
-    "_before",
-    "_longest_step",
-)
-"""What is known of the lists since they were made, and of the step before."""
-
-
 def nearer(planes: Sequence[Plane]) -> float:
     """By how much an image may be nearer than its particle, over how far one is beyond one of the ``planes``.
 
@@ -133,6 +116,22 @@ class Skin:
     where it was listed.  The same on every rank. With ``bounds`` the skin is as wide as pays by how long the
     last lists have served."""
 
+    remembered: tuple[str, ...] = (
+        "width",
+        "_served",
+        "drifted",
+        "_apart",
+        "_since",
+        "_closing",
+        "_beyond",
+        "_crossing",
+        "_acceleration",
+        "_shift",
+        "_before",
+        "_longest_step",
+    )
+    """What is known of the lists since they were made, and of the step before."""
+
     def __init__(
         self, domain: Domain, width: float, planes: Sequence[Plane] = (), bounds: Bounds | None = None
     ):
@@ -169,7 +168,7 @@ class Skin:
 
     def state(self) -> dict[str, float | None]:
         """All that the next answers rest on, but for the particles."""
-        return {name: getattr(self, name) for name in REMEMBERED}
+        return {name: getattr(self, name) for name in self.remembered}
 
     def reach_as(self, state: dict[str, float | None]) -> None:
         """Lists reach as far as those did that are known so well."""
@@ -177,7 +176,7 @@ class Skin:
 
     def restore(self, state: dict[str, float | None]) -> None:
         """Go on as if the lists had been in use since they were made."""
-        for name in REMEMBERED:
+        for name in self.remembered:
             setattr(self, name, state[name])
 
     def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:

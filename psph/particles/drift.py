@@ -14,11 +14,14 @@ MOVED, VELOCITY, DRIFTED = 0, 1, 2
 """What a box is of; and the largest there is of the first."""
 
 
+NONE = np.zeros(0, np.int64)
+"""No rows."""
+
 MARGIN = 2
 """Blocks before and behind each line, empty or periodic images: the farthest that count."""
 
 
-def bounding_boxes(data, position, listed, velocity, starts, planes, counts, reach, periodic):
+def bounding_boxes(data, position, listed, velocity, starts, planes, counts, reach, periodic, coming=NONE):
     """Ranges of displacement and velocity in blocks of cells about as wide as the cutoff.
 
     ``position``, ``listed`` and ``velocity`` are rows of ``data``, one a dimension; the other
@@ -28,10 +31,10 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
     """
     wide = max(reach, 1)
     blocks = int(max(counts[2] // wide, 1))
-    shape = (2, (planes + 2) * counts[1], AXES, blocks + 2 * MARGIN)
+    shape = (2 if len(velocity) else 1, (planes + 2) * counts[1], AXES, blocks + 2 * MARGIN)
     low, high = np.zeros(shape), np.zeros(shape)
     low[:, :, : len(position)], high[:, :, : len(position)] = HIGH, LOW
-    fill_boxes(data, position, listed, velocity, starts, counts[2], wide, blocks, low, high)
+    fill_boxes(data, position, listed, coming, velocity, starts, counts[2], wide, blocks, low, high)
     # Along a line the margins repeat its ends; across lines the comparison itself wraps round.
     if periodic[2]:
         margins = np.r_[:MARGIN, blocks + MARGIN : blocks + 2 * MARGIN]
@@ -42,7 +45,7 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
 
 
 @elementwise
-def fill_boxes(data, position, listed, velocity, starts, columns, wide, blocks, low, high):
+def fill_boxes(data, position, listed, coming, velocity, starts, columns, wide, blocks, low, high):
     """Fill in the blocks that are not in the margins."""
     for line in range(low.shape[1]):
         for block in range(blocks):
@@ -51,14 +54,19 @@ def fill_boxes(data, position, listed, velocity, starts, columns, wide, blocks, 
             last = np.uint64(starts[line * columns + end])
             n = block + MARGIN
             for d in range(len(position)):
-                least, most, v_least, v_most = HIGH, LOW, HIGH, LOW
+                least, most = HIGH, LOW
                 for k in range(first, last):
                     moved = data[position[d], k] - data[listed[d], k]
-                    v = data[velocity[d], k]
+                    if d < len(coming):
+                        moved += data[coming[d], k]
                     least, most = min(least, moved), max(most, moved)
-                    v_least, v_most = min(v_least, v), max(v_most, v)
                 low[MOVED, line, d, n], high[MOVED, line, d, n] = least, most
-                low[VELOCITY, line, d, n], high[VELOCITY, line, d, n] = v_least, v_most
+            for d in range(len(velocity)):
+                least, most = HIGH, LOW
+                for k in range(first, last):
+                    v = data[velocity[d], k]
+                    least, most = min(least, v), max(most, v)
+                low[VELOCITY, line, d, n], high[VELOCITY, line, d, n] = least, most
 
 
 def largest_differences(low, high, planes, rows, axes, periodic):
@@ -87,7 +95,7 @@ def compare_boxes(low, high, planes, rows, axes, periodic):
                 if not (0 <= r < rows or periodic[1]):
                     continue
                 other = np.uint64(p * rows + r % rows)
-                for what in range(np.uint64(2)):
+                for what in range(np.uint64(low.shape[0])):
                     best = largest2[what]
                     if p - plane == 2:
                         raise_approaches(best, low, high, what, line, other, axes[0])

@@ -23,7 +23,7 @@ import numpy as np
 from psph.composition.pair import take
 from psph.composition.terms import displacement, limit_density, limit_wall_density
 from psph.engine.jit import elementwise, inside
-from psph.fields import DENSITY_RATE_1, DENSITY_RATE_2, filled
+from psph.fields import DENSITY_RATE_1, DENSITY_RATE_2, VECTOR, Field, filled
 from psph.moments import fastest_wave
 from psph.simulation.carried import carry, store_apparent_force
 from psph.simulation.rules import borne
@@ -32,6 +32,8 @@ from psph.vectors import add, at, put, scale
 HISTORY = (DENSITY_RATE_1, DENSITY_RATE_2)
 """What a step of one pass keeps of earlier ones, and this one does not."""
 
+COMING = Field("coming", "m", "way from the middle of the step to its end", VECTOR)
+"""What is left to go is known there: lists are kept by it (psph.parallel.arrivals)."""
 
 FASTEST = 1.16
 """ωΔt of the fastest sound on the lattice in a step with a lead, at the most.  The default scheme has 1.12 in
@@ -116,8 +118,7 @@ def together(limits: Iterable[float]) -> float:
 
 @inside
 def half_a_move(rules, i, v, dt):
-    """What particle ``i`` with velocity ``v`` goes in half of a step, m, shifts included: lists that are made
-    at the middle of the step stand the other half."""
+    """What particle ``i`` with velocity ``v`` goes in half of a step, m, shifts included."""
     return add(scale(v, 0.5 * dt), displacement(rules.effects, i, 0.5 * dt))
 
 
@@ -138,6 +139,8 @@ def kick_to_middle(first, last, time, dt, rules, view, columns):
             put(c.position, k, add(at(c.position, k), half_a_move(rules, i, v, dt)))
         else:
             carry(rules, group, k, time, c)
+        # Behind the branch, with no shift of a wall in it: in both branches it took three times as long.
+        put(c.coming, k, half_a_move(rules, i, at(c.velocity, k), dt))
 
 
 @elementwise

@@ -7,6 +7,7 @@ import numpy as np
 from psph.composition.mirrors import with_own_rows
 from psph.composition.reflections import moved
 from psph.fields import APART, WALL
+from psph.parallel.arrivals import Arrivals
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Bounds, Skin, Unlisted
 from psph.parallel.straying import Straying
@@ -15,6 +16,7 @@ from psph.particles.neighbours import Neighbours, empty
 from psph.particles.planes import bring_back, check_apart
 from psph.particles.reach import Reach
 from psph.particles.store import Store
+from psph.simulation.midway import COMING
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.wetting import Wetting
@@ -59,11 +61,13 @@ class Neighbourhood:
         if reach.least is not None:
             passes = 1 if self.plan.midway is None else 2
             bounds = Bounds(reach.least, reach.skin, reach.support, self.store.dimensions, passes)
-        return Skin(self.domain, reach.first, self.plan.planes, bounds)
+        known = self.domain, reach.first, self.plan.planes, bounds
+        return Skin(*known) if self.plan.midway is None else Arrivals(*known, COMING.name)
 
     def valid(self, dt: float, speed: float, acceleration: float, shift: float) -> bool:
         """Whether the lists hold to the end of a step of ``dt`` s, by the largest speed, m/s, acceleration,
-        m/s², and speed of a shift, m/s, of all ranks; collective where it must measure."""
+        m/s², and speed of a shift, m/s, of all ranks; collective where it must measure.  Asked before a step
+        of one pass, and at the middle of one of two."""
         return self.skin.holds(dt, speed, acceleration, shift)
 
     def update(self, spent: float, kinds: Iterable[Work]) -> None:

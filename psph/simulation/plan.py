@@ -32,7 +32,7 @@ from psph.scene.gauging import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import limits_of_effects, step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
-from psph.simulation.midway import HISTORY, cfl_of, is_midway
+from psph.simulation.midway import COMING, HISTORY, cfl_of, is_midway
 from psph.simulation.movement import carried_fields
 from psph.simulation.paces import held_fields, held_parts, is_held, steps_held
 from psph.simulation.passes import Pass, array_of, make_passes
@@ -298,6 +298,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     )
     midway = is_midway(scene, [effect for _, effect, _ in fitted], matter, extremes)
     rate_passes = 2 if midway else 1
+    of_kinds += (COMING,) if midway else ()
     hold_for = steps_held(scene, [effect for _, effect, _ in fitted], extremes, matter, rate_passes)
     if hold_for > 1:
         fitted = [(one, part, why) for one, effect, why in fitted for part in held_parts(effect, scene)]

@@ -44,7 +44,8 @@ class Rules(NamedTuple):
 class Columns(NamedTuple):
     """The arrays of a rank's particles that the step advances; vectors are tuples of component arrays.
 
-    The last three are of particles that take steps of their own (psph.simulation.each_step).
+    ``coming`` is what is left of their way from the middle of a step (psph.simulation.midway); the last three
+    are of particles that take steps of their own (psph.simulation.each_step).
     """
 
     group: Any
@@ -68,6 +69,7 @@ class Columns(NamedTuple):
     drawn_normal: Any = None
     face_side: Any = None
     drawn_side: Any = None
+    coming: Any = None
     first_kick: Any = None
     last_kick: Any = None
     seen_ahead: Any = None

@@ -36,6 +36,14 @@ def predict(simulation) -> None:
         go(simulation.then, simulation.dt, simulation.previous_speed)
 
 
+def go(simulation) -> None:
+    """Predict; at the middle of a step the rest of the way is known, and whether lists hold till its end."""
+    predict(simulation)
+    if simulation.plan.midway:
+        with simulation.ledger("skin"):
+            simulation.listed = simulation.hold(simulation.dt)
+
+
 def begin_prediction(simulation) -> None:
     """What the forces read at the start is what there is."""
     predict(simulation)
@@ -62,7 +70,8 @@ def sum_midway(simulation) -> None:
     """
     if not simulation.plan.midway:
         return
-    holds = simulation.listed or simulation.hold(0.5 * simulation.dt)
+    with simulation.ledger("skin"):
+        holds = simulation.listed or simulation.hold(0.5 * simulation.dt)
     simulation.engine.sum_midway(ghosts_are_fresh=not simulation.listed)
     drift(simulation)
     if holds:
@@ -133,7 +142,7 @@ def find_limits(simulation) -> None:
 
 
 OF_EVERY_STEP = {
-    "predict": Stage(predict, begin_prediction),
+    "predict": Stage(go, begin_prediction),
     "renew_lists": Stage(renew_lists, begin_lists),
     "sum_midway": Stage(sum_midway, sum_midway),
     "sum_over_pairs": Stage(sum_over_pairs, begin_sums),

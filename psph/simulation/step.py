@@ -98,7 +98,7 @@ class Simulation:
         self.dt, self.then, self.whole = dt, self.time + dt if left else end, not left
         with self.ledger("skin"):
             self.jolt = self.engine.poses.advance(self.then, self.dt)
-            self.listed = self.hold(self.dt)
+            self.listed = self.plan.midway is not None or self.hold(self.dt)
         for stage in self.stages:
             stage.run(self)
         self.time = self.then
