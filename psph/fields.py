@@ -136,7 +136,8 @@ class Field(NamedTuple):
     formulas then see its predicted value.  ``start``: what stands in it before it is first filled, a number
     or a function of the lattice (psph.scene.lattice) and of positions (n, dim), m, that gives n numbers.
     ``image``: how it turns at a plane mirror along which matter slips, and at one that it sticks to: one of
-    the types above, of its shape; without one it cannot be read of a neighbour beside mirrors.
+    the types above, of its shape; without one it cannot be read of a neighbour beside mirrors.  ``asked``: it
+    is the last that its effect writes, and stored only where another reads it.
     """
 
     name: str
@@ -147,6 +148,7 @@ class Field(NamedTuple):
     evolves: bool = False
     start: Any = 0.0
     image: Any = None
+    asked: bool = False
 
     @property
     def composed(self) -> bool:

@@ -5,8 +5,9 @@ from remedies import ENTRIES
 from psph.fields import view_of
 from psph.particles.store import Store
 from psph.physics.catalogue import Catalogue
+from psph.simulation.midway import COMING
 
-FIELDS = Catalogue(ENTRIES).fields
+FIELDS = {**Catalogue(ENTRIES).fields, COMING.name: COMING}
 ALL_NAMES = tuple(FIELDS)
 
 

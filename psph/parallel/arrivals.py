@@ -19,9 +19,9 @@ so much of aΔt² at the most, the one from the other."""
 class Arrivals(Skin):
     """Keeps the lists of ``domain`` while no two neighbours differ by ``width`` m at the end of a step.
 
-    At the middle of a step, where it is asked, the rest of the way of each particle is known: the field
-    ``coming``.  Ways are straight, so that a difference is largest at one of their ends.  Nothing is summed up
-    over steps but where nobody can have gone far enough to be looked for.
+    At the middle of a step, where it is asked, the rest of each particle's way is known: the field
+    ``coming``.  Ways are straight, so that a difference is largest at one of their ends.  Where nobody
+    can have gone far enough it does not look.
     """
 
     remembered = ("width", "_served", "drifted", "_apart")
@@ -79,7 +79,7 @@ class Arrivals(Skin):
             low[MOVED, lines], high[MOVED, lines] = told[:, : low.shape[2]], -told[:, low.shape[2] :]
 
     def _beyond_planes(self) -> float:
-        """How far this rank's particles will be beyond one of the planes, m, of those that were before it when
+        """How far this rank's particles come beyond one of the planes, m; of those that were before it when
         they were listed."""
         store, farthest = self.domain.store, 0.0
         for plane in self._planes:

@@ -26,6 +26,7 @@ most."""
 NEAR_PLANE = 1.5
 """Cutoffs from a mirror within which particles count as near it: whoever crosses it before new lists is."""
 
+
 def nearer(planes: Sequence[Plane]) -> float:
     """By how much an image may be nearer than its particle, over how far one is beyond one of the ``planes``.
 

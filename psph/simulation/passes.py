@@ -188,7 +188,7 @@ def _pass(place, effects, reductions, read, before, stored, seen_as, every) -> P
         place,
         effects,
         tuple(reductions),
-        tuple(_filled(e, before) for e in reductions),
+        tuple(_filled(e, before, stored) for e in reductions),
         neighbour,
         tuple(name for name in neighbour if name in before),
         every,
@@ -205,9 +205,10 @@ def _each(stored: str | tuple[str, ...] | None) -> tuple[str, ...]:
     return (stored,) if isinstance(stored, str) else stored or ()
 
 
-def _filled(effect, before) -> str | tuple[str, ...] | None:
+def _filled(effect, before, stored) -> str | tuple[str, ...] | None:
     """The array that takes the effect's sum, or the several, unless an earlier pass has filled them."""
-    names = tuple(field.rate if field.evolves else field.name for field in filled(effect))
+    kept = (field for field in filled(effect) if not field.asked or field.name in stored)
+    names = tuple(field.rate if field.evolves else field.name for field in kept)
     if before.issuperset(names):
         return None
     return names if len(names) > 1 else names[0]

@@ -16,9 +16,9 @@ NAMES = ("position", "listed_position", "predicted_velocity")
 CUTOFF, WIDE = 0.17, 0.02
 
 
-def domain_of(n, dim, periodic=(), seed=3):
+def domain_of(n, dim, periodic=(), seed=3, names=NAMES):
     rng = np.random.default_rng(seed)
-    store = store_of(dim, NAMES)
+    store = store_of(dim, names)
     block = np.zeros((len(store.data), n))
     block[list(store.rows["position"])] = rng.uniform(0, 1, (dim, n))
     store.append(np.arange(n), np.zeros(n, np.uint8), block)

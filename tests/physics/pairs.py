@@ -10,7 +10,7 @@ from psph.composition import terms
 from psph.composition.pair import geometry, take
 from psph.engine.jit import method_of
 from psph.smoothing import kernel
-from psph.vectors import nearest_image, subtract
+from psph.vectors import nearest_image, norm_squared, subtract
 
 H = 0.013
 OPEN = (None, None, None)
@@ -21,7 +21,7 @@ ONE_FOR_ALL = ("smoothing_length", "largest_speed")
 def view(n=2, dim=2, seed=3):
     """Particles scattered within a support, all fields filled."""
     rng = np.random.default_rng(seed)
-    return seen(
+    found = seen(
         position=tuple(rng.uniform(0, H, n) for _ in range(dim)),
         velocity=tuple(rng.normal(size=n) for _ in range(dim)),
         pressure=rng.normal(size=n) * 1000,
@@ -85,7 +85,15 @@ def view(n=2, dim=2, seed=3):
         softening_change=np.resize((0.2, 0.5, 0.3), n),
         thermal_energy=np.resize((1e3, 2e3, 5e2), n),
         facing=tuple(np.resize((0.0, 0.6 if d else 0.8, 0.0), n) for d in range(dim)),
+        disorder=np.zeros(n),
     )
+    return corrected(found, found.gradient_correction)
+
+
+def corrected(one, correction):
+    """The same with L − 1, the components of ``correction`` to the last that it has, and with its size."""
+    known = correction[: len(one.gradient_correction)]
+    return one._replace(gradient_correction=known, disorder=norm_squared(known, one.position))
 
 
 def pair_of(particles, a, b, name="hyperbolic"):

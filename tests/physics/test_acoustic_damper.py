@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from physics.pairs import H, pair_of, sums_of, view
+from physics.pairs import H, corrected, pair_of, sums_of, view
 from physics.test_effects import written_out
 
 from psph.physics.damping.acoustic import AcousticDamper, CorrectedDamper
@@ -23,7 +23,7 @@ def crowd(dim, n=8, **fields):
     """Particles that differ in everything but ``fields``, each with its L."""
     p = view(n=n, dim=dim)._replace(**fields)
     found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(n)]
-    return p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
+    return corrected(p, tuple(map(np.array, zip(*found))))
 
 
 def stored(effect, p):

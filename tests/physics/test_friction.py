@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from physics.pairs import H, pair_of, sums_of, view
+from physics.pairs import H, corrected, pair_of, sums_of, view
 from physics.test_effects import DIMENSIONS, agree_compiled, gathered, patch, written_out
 
 from psph.composition.loads import Couple
@@ -230,15 +230,15 @@ def test_corrected_friction_is_exact_on_a_lattice(dim):
         rubs=np.ones(n),
     )
     stored = sums_of(GradientCorrection(), p, 0)  # the same all over a lattice
-    i = pair_of(p, 0, 0)[0]._replace(gradient_correction=stored)
-    corrected = plain = 0.0
+    i = corrected(pair_of(p, 0, 0)[0], stored)
+    bent = plain = 0.0
     for b in range(1, n):
         _, j, pair = pair_of(p, 0, b, "wendland-c2")
-        j = j._replace(gradient_correction=stored)
-        corrected += rub(CorrectedRub(), i, j, pair) * pair.u_ij[0]
+        j = corrected(j, stored)
+        bent += rub(CorrectedRub(), i, j, pair) * pair.u_ij[0]
         plain += rub(Rub(), i, j, pair) * pair.u_ij[0]
     exact = 0.3 * 2 * dim
-    assert corrected == pytest.approx(exact, rel=1e-10)
+    assert bent == pytest.approx(exact, rel=1e-10)
     assert abs(plain - exact) > 0.005 * exact
 
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from physics.pairs import pair_of, sums_of, view
+from physics.pairs import corrected, pair_of, sums_of, view
 
 from psph.physics.damping.diffusion import BesideSmoothDensity, TankDiffusion
 from psph.physics.damping.matter import OneMatter, SeveralMatters
@@ -80,7 +80,7 @@ def test_where_nothing_smooth_stays_the_stress_of_level_ground_does():
     """In disorder, s = (1 − K₀) ρg·x of the weight; control: with the slopes of that instead, which disorder forgets."""
     disorder = tuple(np.full(2, x) for x in (1.6, 0.0, 0.0, 1.6))
     p = beside(strength=(2.0, 2.0), rest_coefficient=(0.4, 0.4), rest_density=(1600.0, 1600.0))
-    p = p._replace(gradient_correction=disorder, stress_slopes=tuple(np.zeros(2) for _ in p.stress_slopes))
+    p = corrected(p, disorder)._replace(stress_slopes=tuple(np.zeros(2) for _ in p.stress_slopes))
     depth = 0.6 * 1600.0 * np.array(LEVEL[0]) @ np.array(p.position)
     ground = p._replace(deviator=tuple(shape * depth for shape in LEVEL[1]))
     left = np.abs(spread(SeenOrder(), LEVEL, *pair_of(ground, 0, 1))).max()

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from drafts import TANK, draft
-from physics.pairs import pair_of, sums_of, view
+from physics.pairs import corrected, pair_of, sums_of, view
 from physics.test_conservation import potential_of_unequal
 
 from psph.case import CaseError, load
@@ -39,7 +39,7 @@ def crowd(dim, n=12, seed=5):
     p = view(n=n, dim=dim, seed=seed)
     p = p._replace(is_fluid=np.ones(n), mass=p.mass * (20.0 if dim == 1 else 1.0))  # a full row
     found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(n)]
-    return p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
+    return corrected(p, tuple(map(np.array, zip(*found))))
 
 
 def fourth(dim):
@@ -199,7 +199,7 @@ def test_the_gradient_of_a_linear_density_is_exact_in_disorder(dim):
     rho = p.rest_density + 20.0 + slope @ p.position
     p = p._replace(specific_volume=1.0 / rho)
     found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(len(rho))]  # volumes have changed
-    p = p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
+    p = corrected(p, tuple(map(np.array, zip(*found))))
     assert sums_of(fourth(dim), p, 4) == pytest.approx(slope, rel=1e-9)
 
 
@@ -210,7 +210,7 @@ def parabola(dim):
     rho = p.rest_density + 2.0 + slope @ x + bend * (x * x).sum(axis=0)
     gradient = slope[:, None] + 2.0 * bend * x
     ordered = tuple(0.0 * e for e in p.gradient_correction)
-    p = p._replace(specific_volume=1.0 / rho, gradient_correction=ordered)
+    p = corrected(p, ordered)._replace(specific_volume=1.0 / rho)
     return p._replace(density_gradient=tuple(gradient)), gradient
 
 
@@ -232,7 +232,7 @@ def test_in_disorder_all_of_a_density_spreads(dim):
     symmetric = [np.eye(dim)[a, b] for a in range(dim) for b in range(a, dim)]
     for sizes, share in (((0.2, 0.9), 1.0), ((0.0, 0.2), 0.5), ((0.1, 0.1), 0.25)):
         rough = tuple(np.array(sizes) * e / np.sqrt(dim) for e in symmetric)
-        found = fourth(dim).density_rate(*pair_of(p._replace(gradient_correction=rough), 0, 1))
+        found = fourth(dim).density_rate(*pair_of(corrected(p, rough), 0, 1))
         assert found == pytest.approx(share * second, rel=1e-9)
 
 
@@ -259,7 +259,7 @@ def test_damping_is_stronger_in_disorder(dim):
     symmetric = [np.eye(dim)[a, b] for a in range(dim) for b in range(a, dim)]
     for sizes, alpha in (((0.0, 0.0), 0.1), ((0.0, 0.2), 0.2), ((0.3, 0.2), 0.3)):
         rough = tuple(np.array(sizes) * e / np.sqrt(dim) for e in symmetric)
-        pair = pair_of(p._replace(gradient_correction=rough), 0, 1)
+        pair = pair_of(corrected(p, rough), 0, 1)
         found = BesideLinearFlow(0.1, 0.0, 0.2).radial(*pair)
         assert found == pytest.approx(PairDamping(alpha).radial(*pair), rel=1e-12)
 
@@ -326,7 +326,7 @@ def test_the_potential_acts_in_disorder_alone(dim):
 
     def force(of_i, of_j):
         correction = tuple(np.array([of_i, of_j]) * e / np.sqrt(dim) for e in symmetric)
-        return potential(dim).radial(*pair_of(p._replace(gradient_correction=correction), 0, 1))
+        return potential(dim).radial(*pair_of(corrected(p, correction), 0, 1))
 
     full = whole.radial(*pair_of(p, 0, 1))
     assert full != 0.0 and force(0.0, 0.0) == 0.0
@@ -341,7 +341,7 @@ def test_a_corrected_background_is_the_plain_one_and_what_the_correction_adds(di
     i, j, pair = pair_of(p, 0, 1)
     plain = BackgroundPressure(40.0).radial(i, j, pair) * np.array(pair.x_ij)
     none = tuple(0.0 * e for e in i.gradient_correction)
-    uncorrected = (i._replace(gradient_correction=none), j._replace(gradient_correction=none))
+    uncorrected = (corrected(i, none), corrected(j, none))
     assert CorrectedBackground(40.0).push(*uncorrected, pair) == pytest.approx(plain, rel=1e-12)
     raised, lower = (
         np.array(GradientCorrection().push(*pair_of(p._replace(pressure=p.pressure + up), 0, 1)))

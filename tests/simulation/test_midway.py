@@ -31,7 +31,8 @@ def swing(theta, steps, decay=0.0, lead=0.0):
     density, rate, volume, pressure = np.ones(1), np.zeros(1), np.ones(1), np.zeros(1)
     v[0][0] = 1.0
     view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
-    columns = Columns(group, None, x, v, predicted, a, density, rate, None, None, volume, pressure)
+    told = group, None, x, v, predicted, a, density, rate, None, None, volume, pressure
+    columns = Columns(*told, coming=(np.zeros(1),))
     largest = 0.0
     for _ in range(steps):
         kick_to_middle(0, 1, 0.0, 1.0, rules, view, columns)
@@ -84,14 +85,16 @@ def test_a_particle_goes_along_the_chord_and_its_velocity_is_that_of_the_chord()
         array[0] = value
     density, rate = np.full(1, 2.0), np.full(1, 3.0)
     view = seen(position=x, velocity=predicted, rest_density=2.0, sound_speed=1.0)
-    columns = Columns(group, None, x, v, predicted, a, density, rate, None, None, np.ones(1), np.zeros(1))
+    told = group, None, x, v, predicted, a, density, rate, None, None, np.ones(1), np.zeros(1)
+    columns = Columns(*told, coming=tuple(np.zeros(1) for _ in range(2)))
     kick_to_middle(0, 1, 0.0, 0.1, RULES, view, columns)
     half = [c[0] for c in x]
+    told_end = [here[0] + left[0] for here, left in zip(x, columns.coming)]
     chord = [c[0] for c in predicted]
     drift_to_end(0, 1, 0.0, 0.1, RULES, view, columns)
     end = [c[0] for c in x]
     assert chord == pytest.approx([0.8, 2.3]) and density[0] == pytest.approx(2.3)
-    assert half == pytest.approx(0.5 * (np.array([0.3, -0.2]) + end))
+    assert half == pytest.approx(0.5 * (np.array([0.3, -0.2]) + end)) and told_end == end
     assert [c[0] for c in predicted] == pytest.approx([0.6, 2.6])
 
 

@@ -143,6 +143,16 @@ def test_sums_of_the_pass_before_bring_their_fields(planned):
     assert plan.displaces and not planned("physics.gradient_correction=0.5")[1].displaces
 
 
+def test_the_size_of_a_correction_is_stored_where_an_effect_asks_for_it(planned):
+    """And a pass that looks at disorder alone fetches that, and no L of a neighbour."""
+    corrected = "physics.gradient_correction=0.5"
+    assert "disorder" not in planned(corrected)[1].arrays
+    _, plan = planned(corrected, "physics.fourth_order_diffusion=0.1", "time.passes=2")
+    assert "disorder" in plan.arrays
+    fetched = plan.midway.neighbour_fields
+    assert "disorder" in fetched and "gradient_correction" not in fetched
+
+
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_the_scheme_takes_every_kernel(kernel, planned):
     """A kernel need not have a W′/r of its own."""

@@ -145,14 +145,17 @@ class BesideSmoothDensity(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        # Over ρ_j, so that nothing is divided by 1/ρ_j.
         weight = _weight(self, i, j, pair)
-        rise = 1.0 / i.specific_volume - 1.0 / j.specific_volume + (j.rest_density - i.rest_density) - weight
-        smooth = 0.5 * dot(add(i.density_gradient, j.density_gradient), pair.x_ij) - weight
+        level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density) - weight
+        slope = 0.5 * dot(add(i.density_gradient, j.density_gradient), pair.x_ij) - weight
+        rise, smooth = level * j.specific_volume - 1.0, slope * j.specific_volume
         smooth = min(max(smooth, min(rise, 0.0)), max(rise, 0.0))
         ordered = 1.0 - half_disorder(ROUGH, i) - half_disorder(ROUGH, j)
-        mixing = 2.0 * self.delta * i.smoothing_length * i.sound_speed
-        flux = mixing * j.specific_volume * alike(self.matter, i, j) * (rise - ordered * smooth)
-        return where(_giving(i, j) > 0.0, flux, 0.0) * _nearness(i, pair)
+        mixing = 2.0 * self.delta * i.smoothing_length * i.sound_speed * alike(self.matter, i, j)
+        flux = mixing * (rise - ordered * smooth)
+        nearness = min(pair.r2 * (100.0 / (i.smoothing_length * i.smoothing_length)), 1.0)
+        return where(_giving(i, j) > 0.0, flux, 0.0) * (nearness * pair.m_dw_r)
 
     def longest_step(self, scene):
         """Δt ≤ 0.15/(S h δ c), s: see STABLE."""

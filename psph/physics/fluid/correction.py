@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.fields import SYMMETRIC, Turned
+from psph.fields import SYMMETRIC, Same, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.moments import first_moment
@@ -32,6 +32,9 @@ CORRECTED = ("symmetric", "difference")
 CORRECTION = Declared(
     "gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC, image=Turned
 )
+
+SIZE = Declared("disorder", "1", "square of the size of L - 1", image=Same, asked=True)
+"""Whoever looks at disorder alone fetches this number of each neighbour, and not the whole of its L."""
 
 
 DISORDER = 0.2
@@ -65,7 +68,7 @@ class GradientCorrection(NamedTuple):
         ),
     ] = 0.5
 
-    writes = CORRECTION
+    writes = CORRECTION, SIZE
     lagged = True
     slow = True
 
@@ -90,7 +93,7 @@ class GradientCorrection(NamedTuple):
         return add(total, scale(outer(pair.x_ij), -j.mass * j.specific_volume * pair.dw_r))
 
     def finish_value(self, total, i, kernel):
-        """L − 1."""
+        """L − 1, and its size."""
         return _correction(total, self.least, i.position)
 
     def density_rate(self, i, j, pair):
@@ -130,7 +133,7 @@ class CorrectionBesideWalls(NamedTuple):
     cells: Cells = OneEach()
     buffers: Buffers = NoBuffers()
 
-    writes = CORRECTION
+    writes = CORRECTION, SIZE
     lagged = True
     slow = True
 
@@ -138,7 +141,7 @@ class CorrectionBesideWalls(NamedTuple):
     gather = GradientCorrection.gather
 
     def finish_value(self, total, i, kernel):
-        """L − 1."""
+        """L − 1, and its size."""
         return in_walls(total, i, sharing(self.cells, i) * i.mass, self)
 
     density_rate = GradientCorrection.density_rate
@@ -164,7 +167,7 @@ class VolumeCorrection(NamedTuple):
     walls: Hold = Holding()
     buffers: Buffers = NoBuffers()
 
-    writes = CORRECTION
+    writes = CORRECTION, SIZE
     lagged = True
     slow = True
 
@@ -172,7 +175,7 @@ class VolumeCorrection(NamedTuple):
     gather = GradientCorrection.gather
 
     def finish_value(self, total, i, kernel):
-        """L − 1."""
+        """L − 1, and its size."""
         return in_walls(total, i, i.mass, self)
 
     def density_rate(self, i, j, pair):
@@ -199,7 +202,7 @@ class DifferenceCorrection(NamedTuple):
 
     least: float
 
-    writes = CORRECTION
+    writes = CORRECTION, SIZE
     lagged = True
     slow = True
 
@@ -226,7 +229,7 @@ def needs_correction(physics):
 
 @helper
 def in_walls(total, i, mass, of):
-    """L − 1, in a wall that of a lattice with the ``mass`` in a cell."""
+    """L − 1 and its size, in a wall that of a lattice with the ``mass`` in a cell."""
     whole, front = mass * i.specific_volume / of.volume, in_front(of.buffers, i)
     behind = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - front), i.position)
     return _correction(add(scale(total, front), behind), of.least, i.position)
@@ -244,10 +247,11 @@ def _corrected_push(felt_by_both, i, j, pair):
 def half_disorder(half, i):
     """½ min(|L − 1|²/t², 1) with ``half`` = 1/(2t²): of both ends of a pair together between 0, where
     neighbours are in order all around, and 1."""
-    return min(half * norm_squared(i.gradient_correction, i.position), 0.5)
+    return min(half * i.disorder, 0.5)
 
 
 @helper
 def _correction(total, least, like):
     size = determinant(total, like)
-    return scale(less_diagonal(adjugate(total, like), size, like), 1.0 / max(size, least))
+    correction = scale(less_diagonal(adjugate(total, like), size, like), 1.0 / max(size, least))
+    return correction + (norm_squared(correction, like),)
