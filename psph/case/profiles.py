@@ -30,8 +30,9 @@ def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[st
 def fill(data: dict[str, Any], touched: list[tuple[str | int, ...]]) -> dict[tuple[str, ...], str]:
     """Add the keys of the profile and the scheme to ``data``; which of them set which location.
 
-    Keys at, above or below those ``touched`` stay as they are.  A profile or a scheme that is
-    itself among these takes the place of all others.
+    Keys at, above or below those ``touched`` stay as they are; where these are within a table, and the file
+    has none, they change that of the profile or scheme.  A profile or a scheme that is itself among these
+    takes the place of all others.
     """
     filled: dict[tuple[str, ...], str] = {}
     data["scheme"] = scheme_of(data)
@@ -40,7 +41,11 @@ def fill(data: dict[str, Any], touched: list[tuple[str | int, ...]]) -> dict[tup
     for key, (name, value) in named.items():
         path = tuple(key.split("."))
         table = data.setdefault(path[0], {}) if len(path) > 1 else data
-        if not isinstance(table, dict) or any(_share(path, other) for other in touched):
+        if not isinstance(table, dict):
+            continue
+        if any(_share(path, other) for other in touched):
+            if isinstance(value, dict) and _only_within(path, table.get(path[-1]), touched):
+                table[path[-1]] = value | table[path[-1]]
             continue
         if value == OFF and (name,) in touched:
             table.pop(path[-1], None)
@@ -66,6 +71,11 @@ def _scheme_keys(data: Mapping[str, Any]) -> dict[str, Any]:
     if not isinstance(name, str) or name not in SCHEMES:
         return {}
     return scheme_keys(name, isinstance(physics, dict) and "free_surface" in physics)
+
+
+def _only_within(path: tuple, given: Any, touched: list[tuple[str | int, ...]]) -> bool:
+    """Whether all that is ``given`` at a location was touched one by one."""
+    return isinstance(given, dict) and all((*path, key) in touched for key in given)
 
 
 def _share(one: tuple, other: tuple) -> bool:

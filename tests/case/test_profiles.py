@@ -53,6 +53,21 @@ def test_a_profile_on_the_command_line_wins_over_the_file(tmp_path):
     assert case.physics.sound_speed is not None  # a profile has no say in it
 
 
+def test_a_key_within_a_table_of_the_scheme_is_changed_alone(tmp_path):
+    """A table that the file or the command line gives whole is that."""
+    inner, whole = "physics.local_potential.threshold=0.1", "physics.local_potential={threshold=0.1}"
+    written = BARE.replace("sound_speed", "local_potential = { strength = 0.01 }\nsound_speed")
+    found = {
+        (text, key): draft(tmp_path, text, key).physics.local_potential
+        for text in (BARE, written)
+        for key in (inner, whole)
+    }
+    of_scheme = SCHEMES[STABLE]["physics.local_potential"]["strength"]
+    strengths = [found[text, key].strength for text, key in ((BARE, inner), (BARE, whole), (written, inner))]
+    assert strengths == [of_scheme, 0.008, 0.01]
+    assert {one.threshold for one in found.values()} == {0.1}
+
+
 def test_an_effect_of_a_profile_can_be_left_out(tmp_path):
     whole = named("reference", SHUT)
     written = whole.replace("sound_speed", 'particle_shifting = "off"\nsound_speed')
