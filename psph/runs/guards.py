@@ -25,7 +25,7 @@ from psph.work import Work
 
 EVERY = 100
 """Passes that give rates, so many steps or half as many, from one look behind the walls and at the energy to
-the next."""
+the next; the last one is at the end."""
 
 STOP, CLOCK, DEPTH, OVERLAP = "stop", "clock", "depth", "overlap"
 
@@ -145,7 +145,8 @@ class Guards:
             yield "speed"
         if stiff and simulation.strain > bounds.density:
             yield "density"
-        if simulation.passed(EVERY // simulation.plan.rate_passes):
+        over = simulation.time >= self.scene.case.time.end
+        if over or simulation.passed(EVERY // simulation.plan.rate_passes):
             with simulation.ledger("guards"):
                 slow = [
                     (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),

@@ -109,6 +109,13 @@ def test_through_the_wall(tmp_path):
     assert report_of(tmp_path / "run")[1]["pushed hardest by"] == "nothing"  # all alone out there
 
 
+def test_what_happens_in_the_last_of_a_run_is_seen(tmp_path):
+    """A run whose end comes between two looks: the one at its end finds who went through the wall."""
+    lines = [*THROWN, "guards.speed=100.0", *LOOSE, "time.step=2e-4", "time.end=0.018"]
+    trouble, _ = started(boxed(tmp_path, COMM, *lines), tmp_path / "run", COMM)
+    assert "lost a particle at step 90, " in str(trouble)
+
+
 def test_the_square_under_tension(tmp_path):
     """Case 4.2 by traditional SPH, a shipped case: it is let go on there, not here."""
     trouble, _ = started(load(TENSION, ["guards.on_trouble=stop"]), tmp_path, COMM)
