@@ -18,11 +18,12 @@ from psph.runs.footprint import (
     slab_planes,
 )
 from psph.runs.forecast import forecast, forecast_lines, pull
-from psph.runs.hints import hints
+from psph.runs.hints import hints, unheeded
 from psph.runs.output_size import output_lines
 from psph.runs.stability_forecast import stability_forecast
 from psph.scene.meshes.report import described
 from psph.scene.sites import sites_within
+from psph.simulation.midway import why_one_pass
 from psph.simulation.plan import Plan, make_plan
 from psph.theory.curves.catalogue import TAKEN
 
@@ -177,7 +178,8 @@ def _pass_lines(scene, plan: Plan, said: dict[str, list[str]]) -> Iterator[str]:
         flops = plan.flops_per_pair(scene.layout.periods)
         often = "one at the middle of a step for the density, one at its end" if plan.midway else "one a step"
         if scene.case.time.passes != 1 and not plan.midway:
-            often += ", since not all that is in the scene bears two, or they gain nothing"
+            effects = tuple(call.effect for call in plan.called)
+            often += f", since {why_one_pass(scene, effects, plan.matter, plan.extremes)}"
         yield f"Pass over the neighbours, {often}, {flops} flops a pair"
     yield from said["passes"]
 
@@ -265,6 +267,8 @@ def _step_lines(scene, plan: Plan) -> Iterator[str]:
         (step, name if level is None else f"{name}, level {level}")
         for level, step, name in plan.limits_by_level(scene.expected_speed, pull(scene))
     ]
+    if plan.fixed_step is not None:
+        limits += [(step, f"not heeded: {name}") for step, name in unheeded(scene, plan)]
     width = _column(name for _, name in limits)
     for step, name in limits:
         yield f"  {name:<{width}}{step:.3g} s"

@@ -1,10 +1,14 @@
 """What of a case has no influence on its scene, or less than it asks for."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
-from psph.runs.forecast import long_run
+from psph.runs.forecast import long_run, pull
 from psph.simulation.paces import is_held
 from psph.simulation.plan import Plan
+
+TOO_LONG = 1.2
+"""So many times as long as its limits a given time step may be before it is said."""
 
 
 def hints(scene, plan: Plan) -> Iterator[str]:
@@ -28,7 +32,21 @@ def plan_warnings(scene, plan: Plan, ranks: int) -> Iterator[str]:
     """
     for line in _served_in_vain(scene, plan):
         yield f"{scene.case.file}: {line}"
+    if plan.fixed_step is not None and (limits := [*unheeded(scene, plan)]):
+        step, name = min(limits)
+        if plan.fixed_step > TOO_LONG * step:
+            yield (
+                f"{scene.case.file}: time.step: {plan.fixed_step:g} s is {plan.fixed_step / step:.2g} times "
+                f"as long as {name} allows; remove it, or give at most {step:.2g}"
+            )
     yield from long_run(scene, plan, ranks)
+
+
+def unheeded(scene, plan: Plan) -> Iterator[tuple[float, str]]:
+    """The limits, s, that a given time step does not heed, at the expected speed, with their names."""
+    free = replace(plan, fixed_step=None)
+    for _, step, name in free.limits_by_level(scene.expected_speed, pull(scene)):
+        yield step, name
 
 
 def _served_in_vain(scene, plan: Plan) -> Iterator[str]:

@@ -49,11 +49,21 @@ def is_midway(scene, effects, kinds, extremes) -> bool:
     Where ``time.passes`` asks for two, all kinds of matter bear it, and none of the ``effects`` evolves a
     field of its own, whose rate would have to be taken there too; by itself only where that pays.
     """
-    effects, passes = tuple(effects), scene.case.time.passes
-    evolve = (field.evolves for effect in effects for field in filled(effect))
-    if passes == 1 or not all(kind.bears_midway for kind in kinds) or any(evolve):
-        return False
-    return passes == 2 or _pays(scene, effects, extremes)
+    return not why_one_pass(scene, tuple(effects), kinds, extremes)
+
+
+def why_one_pass(scene, effects: tuple, kinds, extremes) -> str:
+    """Why steps take one pass, in words; empty where they take two."""
+    passes = scene.case.time.passes
+    if passes == 1:
+        return "time.passes = 1"
+    if one := next((kind.name for kind in kinds if not kind.bears_midway), ""):
+        return f"beside {one} there is no other way"
+    if one := next(
+        (type(effect).__name__ for effect in effects if any(f.evolves for f in filled(effect))), ""
+    ):
+        return f"{one} evolves a field in time"
+    return "" if passes == 2 else _why_it_does_not_pay(scene, effects, extremes)
 
 
 def cfl_of(scene, passes: int) -> float:
@@ -66,16 +76,20 @@ def cfl_of(scene, passes: int) -> float:
     return min(cfl, FASTEST / (scene.smoothing_length * fastest))
 
 
-def _pays(scene, effects: tuple, extremes) -> bool:
-    """Whether steps of two passes are so much longer that they cost less: not where friction limits them.
+def _why_it_does_not_pay(scene, effects: tuple, extremes) -> str:
+    """Why steps of two passes are not so much longer that they cost less; empty where they are.
 
     Held rates of friction (psph.simulation.paces) shorten them, so these go with one pass.
     """
     one, two = (_longest(scene, effects, extremes, passes) for passes in (1, 2))
     fixed = scene.case.time.step
     if scene.case.time.damping_every > 1:
-        return False
-    return fixed > one if fixed else two > WORTH * one
+        return "friction is summed in some steps alone (time.damping_every)"
+    if fixed and fixed <= one:
+        return "time.step is no longer than one bears"
+    if not fixed and two <= WORTH * one:
+        return f"with two a step is {two / one:.2g} times as long, since friction limits it"
+    return ""
 
 
 def _longest(scene, effects: tuple, extremes, passes: int) -> float:

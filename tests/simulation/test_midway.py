@@ -173,17 +173,28 @@ def test_nor_does_it_where_pressures_are_ahead(tmp_path):
 
 def test_the_default_takes_two_passes_where_they_pay(tmp_path):
     """Not where friction limits a step, where a fixed one is short, or where rates of friction are held."""
-    for passes, *sets in (
-        (2,),
-        (1, "fluids.water.viscosity=0.5"),
-        (1, "time.step=1e-4"),
-        (2, "time.step=1.2e-3"),
-        (1, "time.damping_every=4"),
-        (2, "time.damping_every=4", "time.passes=2"),
+    for why, *sets in (
+        ("",),
+        ("since with two a step is 1.", "fluids.water.viscosity=0.5"),
+        ("since time.step is no longer than one bears", "time.step=1e-4"),
+        ("", "time.step=1.2e-3"),
+        ("since friction is summed in some steps alone", "time.damping_every=4"),
+        ("", "time.damping_every=4", "time.passes=2"),
     ):
-        plan = make_plan(Scene(draft(tmp_path, DAM, *sets)))
-        assert plan.rate_passes == passes, sets
-        assert (plan.lead > 0.0) == (passes == 2)
+        scene = Scene(draft(tmp_path, DAM, *sets))
+        plan = make_plan(scene)
+        assert plan.rate_passes == (1 if why else 2), sets
+        assert (plan.lead > 0.0) == (not why) and why in "\n".join(explain(scene, 1))
+
+
+def test_a_given_step_is_told_beside_what_it_does_not_heed(tmp_path):
+    """The control: one that is no longer than that."""
+    for step, told in (("0.002", True), ("1e-3", False)):
+        scene = Scene(draft(tmp_path, DAM, f"time.step={step}"))
+        plan = make_plan(scene)
+        warned = [line for line in plan_warnings(scene, plan, 1) if "time.step: " in line]
+        assert bool(warned) == told and all("sound (CFL) allows; remove it" in line for line in warned)
+        assert "not heeded: sound (CFL)" in "\n".join(explain(scene, 1))
 
 
 STILL = (
@@ -246,6 +257,6 @@ def test_what_moves_by_more_than_rates_and_poses_keeps_one_pass(tmp_path, name):
     scene = Scene(load(tmp_path / "case.toml"))
     [told] = plan_warnings(scene, plan, 1)
     assert "time.passes: 2 does nothing: not all that is in the scene bears it" in told
-    why = "one a step, since not all that is in the scene bears two, or they gain nothing"
+    why = f"one a step, since beside {name}"
     assert (why in "\n".join(explain(scene, 1))) == (name == "soil")  # solids alone have no pass in space
     assert plan.midway is None and plan.cfl == SCENES[name]["time"].get("cfl", plan.cfl)
