@@ -5,6 +5,9 @@ from time import perf_counter, thread_time
 
 from psph.engine.threads import threads
 
+BUSY = "the machine is busy"
+"""How its warning begins."""
+
 PATIENCE = 2.0
 """Seconds of steps before it is said."""
 
@@ -48,6 +51,6 @@ class Busy:
             return ""
         fewer = max(1, min(round(share * self.comm.size), self.comm.size - 1))
         return (
-            f"the machine is busy: a rank gets {share:.0%} of a core, and all wait for the slowest; "
+            f"{BUSY}: a rank gets {share:.0%} of a core, and all wait for the slowest; "
             f"try fewer ranks (mpirun -n {fewer})"
         )

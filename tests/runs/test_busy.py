@@ -63,18 +63,29 @@ def test_one_rank_waits_for_nobody(monkeypatch):
     assert told.step(lambda: clocks.work(5.0, 0.1)) == "" and [*told.summary()] == []
 
 
-def test_two_ranks_on_one_core_are_told_to_be_one(tmp_path):
-    """A real job, whose ranks may use but one core."""
-    (tmp_path / "case.toml").write_text(BOX, encoding="utf-8")
+def on_one_core(folder, *words):
+    """A real job of two ranks that may use but one core."""
+    (folder / "case.toml").write_text(BOX, encoding="utf-8")
     core = min(os.sched_getaffinity(0))
     # Long enough where a third process shares the core too: the ranks then take turns more often.
-    words = ["-m", "psph", "case.toml", "--set", "time.end=2.0", "--set", "output.frames=2.0"]
+    ends = ["--set", "time.end=2.0", "--set", "output.frames=2.0"]
     one_core = {
         "preexec_fn": lambda: os.sched_setaffinity(0, {core}),
         "env": {"OMPI_MCA_mpi_yield_when_idle": "0"},
     }
-    job = mpirun(2, words, cwd=tmp_path, **one_core)
+    job = mpirun(2, ["-m", "psph", *words, *ends], cwd=folder, **one_core)
     assert job.returncode == 0, job.stderr
+    return job
+
+
+@pytest.mark.slow
+def test_so_is_who_measures_seconds(tmp_path):
+    told = ["--vary", "space.spacing=0.05,0.04", "--set", "study.repeats=1"]
+    assert "warning: the machine is busy: " in on_one_core(tmp_path, "study", "case.toml", *told).stdout
+
+
+def test_two_ranks_on_one_core_are_told_to_be_one(tmp_path):
+    job = on_one_core(tmp_path, "case.toml")
     assert job.stderr.count("warning: the machine is busy: ") == 1
     assert "try fewer ranks (mpirun -n 1)" in job.stderr
     assert "the machine is busy" in job.stdout  # and at the end
