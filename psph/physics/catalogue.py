@@ -54,6 +54,7 @@ from psph.physics.surface.contact import ContactAngle, ContactLine
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.surface.hysteresis import LineMemory
 from psph.physics.surface.tension import SurfaceTension
+from psph.physics.walls.approach import WallApproach
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
@@ -177,6 +178,7 @@ CATALOGUE = (
     Entry("physics.contact", SolidContact),
     Entry("physics.free_surface", FreeSurface),
     Entry("physics.tension_floor", TensionFloor),
+    Entry("physics.wall_approach", WallApproach),
     Entry("physics.background_pressure", BackgroundPressure),
     Entry("physics.density_diffusion", DensityDiffusion),
     Entry("physics.fourth_order_diffusion", FourthOrderDiffusion),

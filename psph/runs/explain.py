@@ -267,8 +267,9 @@ def _step_lines(scene, plan: Plan) -> Iterator[str]:
         (step, name if level is None else f"{name}, level {level}")
         for level, step, name in plan.limits_by_level(scene.expected_speed, pull(scene))
     ]
-    if plan.fixed_step is not None:
-        limits += [(step, f"not heeded: {name}") for step, name in unheeded(scene, plan)]
     width = _column(name for _, name in limits)
     for step, name in limits:
         yield f"  {name:<{width}}{step:.3g} s"
+    if plan.fixed_step is not None:
+        told = (f"{name} {step:.3g} s" for step, name in unheeded(scene, plan))
+        yield f"  not heeded: {', '.join(told)}"

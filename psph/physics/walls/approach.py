@@ -1,0 +1,72 @@
+"""From where on a wall counts what comes nearer as compression."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+from psph.acts import FLUIDS, MADE_FOR_FLUIDS
+from psph.formula import where
+from psph.physics.facts import Facts
+from psph.physics.fluid.several import several
+from psph.physics.walls.conditions import BEARING
+
+BLENDS = 0.5
+"""Spacings over which the approach comes to count."""
+
+
+class WallApproach(NamedTuple):
+    """A wall counts as compression the approach of fluid that is near, and not of what is on its way.
+
+    dρ_i/dt of a wall particle i has less by (1 − φ) m_j u_ij·∇W_ij of each fluid particle j,
+    φ = (R − r_ij)/(½ dx) between 0 and 1, R = ``reach`` dx.  By the whole sum a dry wall is compressed by
+    what comes within the support, stops it there, and gives the excess back in some milliseconds: a tongue
+    glides one to two spacings above a dry bed, and strikes the next wall from there.  Of fluid that touches
+    the wall already the rows behind the first do not count either; their pressure comes by diffusion.  The
+    fluid feels the wall as before.  psph's own.
+    """
+
+    acts = (FLUIDS, *BEARING)
+    refuses = MADE_FOR_FLUIDS
+
+    reach: Annotated[
+        float,
+        Field(
+            gt=0.5,
+            le=4,
+            description="R: spacings within which the approach of fluid counts",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 1.5
+
+    def in_scene(self, scene: Facts):
+        """The form that knows the spacing, where a fluid with a free surface may come to walls."""
+        walls = [one for one in scene.species if not one.is_fluid]
+        strong = any(one.shear_modulus for one in scene.species)
+        if not walls or strong or several(scene) or not scene.has_free_surface:
+            return None
+        h = scene.smoothing_length / scene.spacing
+        return NearApproach(self.reach / h, h / BLENDS)
+
+    def why_absent(self, scene: Facts):
+        """Why it has no form in the scene."""
+        return "it needs walls or bodies, one fluid with a free surface, and no matter with an evolved stress"
+
+
+class NearApproach(NamedTuple):
+    """A wall counts as compression the approach of fluid that is near, and not of what is on its way.
+
+    The form of :class:`WallApproach` in a scene: φ = (``reach`` − r/h) ``steepness`` between 0 and 1.
+    """
+
+    reach: float
+    steepness: float
+
+    def density_rate(self, i, j, pair):
+        """What a wall leaves out of one neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        near = (self.reach - pair.r / i.smoothing_length) * self.steepness
+        left = (1.0 - min(max(near, 0.0), 1.0)) * j.is_fluid
+        return where(i.is_fluid > 0.0, 0.0, -left * (pair.u_dot_x * pair.m_dw_r))
+
+    def linear(self, scene: Facts):
+        """Linear theory knows of no walls."""
+        return None
