@@ -122,7 +122,7 @@ def checked(
 
     applied = [_override(_with(file, option, text), data, text) for text in overrides]
     touched = [override.key for override in applied]
-    filled = fill(data, touched)
+    filled = fill(data, touched, [override.made for override in applied])
 
     def source(loc):
         for override in reversed(applied):

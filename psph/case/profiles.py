@@ -5,6 +5,8 @@ from typing import Any
 
 from psph.case.schemes import SCHEMES, scheme_keys, scheme_of
 
+Location = tuple[str | int, ...]
+
 OFF = "off"
 """The value that removes a key from the case."""
 
@@ -27,12 +29,12 @@ def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[st
     return (CLOSED if len(set(periodic)) == dimensions else PROFILES)[profile]
 
 
-def fill(data: dict[str, Any], touched: list[tuple[str | int, ...]]) -> dict[tuple[str, ...], str]:
+def fill(data: dict[str, Any], touched: list[Location], made: list[Location]) -> dict[tuple[str, ...], str]:
     """Add the keys of the profile and the scheme to ``data``; which of them set which location.
 
-    Keys at, above or below those ``touched`` stay as they are; where these are within a table, and the file
-    has none, they change that of the profile or scheme.  A profile or a scheme that is itself among these
-    takes the place of all others.
+    Keys at, above or below those ``touched`` stay as they are; where these are within a table that they have
+    ``made``, since the file has none, they change that of the profile or scheme.  A profile or a scheme that
+    is itself among these takes the place of all others.
     """
     filled: dict[tuple[str, ...], str] = {}
     data["scheme"] = scheme_of(data)
@@ -44,7 +46,8 @@ def fill(data: dict[str, Any], touched: list[tuple[str | int, ...]]) -> dict[tup
         if not isinstance(table, dict):
             continue
         if any(_share(path, other) for other in touched):
-            if isinstance(value, dict) and _only_within(path, table.get(path[-1]), touched):
+            within = path not in touched and any(one == path[: len(one)] for one in made)
+            if isinstance(value, dict) and within and isinstance(table.get(path[-1]), dict):
                 table[path[-1]] = value | table[path[-1]]
             continue
         if value == OFF and (name,) in touched:
@@ -71,11 +74,6 @@ def _scheme_keys(data: Mapping[str, Any]) -> dict[str, Any]:
     if not isinstance(name, str) or name not in SCHEMES:
         return {}
     return scheme_keys(name, isinstance(physics, dict) and "free_surface" in physics)
-
-
-def _only_within(path: tuple, given: Any, touched: list[tuple[str | int, ...]]) -> bool:
-    """Whether all that is ``given`` at a location was touched one by one."""
-    return isinstance(given, dict) and all((*path, key) in touched for key in given)
 
 
 def _share(one: tuple, other: tuple) -> bool:

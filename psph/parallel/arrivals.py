@@ -45,7 +45,7 @@ class Arrivals(Skin):
     def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
         """Whether the lists hold to the end of the step, before which particles go ``dt`` s with the largest
         ``speed``, ``acceleration`` and ``shift`` (m/s) of the scene; collective where it must look."""
-        way = dt * (speed + shift + 0.5 * dt * acceleration)
+        way = dt * (speed + shift + dt * acceleration)  # kicked by half a step, of which half may be over
         drifted, apart = self.drifted + way, self._apart + 2.0 * way
         if self._planes or not (apart < self.width and drifted < self.farthest):
             drifted, apart = self._look()

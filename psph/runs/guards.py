@@ -145,8 +145,7 @@ class Guards:
             yield "speed"
         if stiff and simulation.strain > bounds.density:
             yield "density"
-        over = simulation.time >= self.scene.case.time.end
-        if over or simulation.passed(EVERY // simulation.plan.rate_passes):
+        if self._is_over or simulation.passed(EVERY // simulation.plan.rate_passes):
             with simulation.ledger("guards"):
                 slow = [
                     (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
@@ -154,6 +153,11 @@ class Guards:
                     ("energy", self._books and self._gain() > bounds.energy),
                 ]
             yield from (name for name, passed in slow if passed)
+
+    @property
+    def _is_over(self) -> bool:
+        """Whether the run has come to its end."""
+        return self.simulation.time >= self.scene.case.time.end
 
     def _overlap(self) -> tuple[Work, np.ndarray] | None:
         """The kind of matter that has something too deep inside another or a wall, and which particles these
@@ -257,7 +261,8 @@ class Guards:
         kept = f"`{path.name}` holds this state, and so does the last frame."
         if guard == CLOCK:
             return kept
-        return f"{kept} {typed(*again, '--set', 'guards.on_trouble=warn')} goes on from it."
+        later = ["--set", f"time.end={2.0 * case.time.end:g}"] if self._is_over else []
+        return f"{kept} {typed(*again, '--set', 'guards.on_trouble=warn', *later)} goes on from it."
 
     def _find(self, guard: str) -> Suspect:
         worst = getattr(self, f"_worst_by_{guard}")()

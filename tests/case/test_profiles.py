@@ -62,6 +62,12 @@ def test_a_key_within_a_table_of_the_scheme_is_changed_alone(tmp_path):
         for text in (BARE, written)
         for key in (inner, whole)
     }
+    for text in ("local_potential = { threshold = 0.3 }", "local_potential = {}"):
+        given = BARE.replace("sound_speed", f"{text}\nsound_speed")
+        assert draft(tmp_path, given, inner).physics.local_potential.strength == 0.008
+    assert (
+        draft(tmp_path, BARE, "physics.local_potential={}", inner).physics.local_potential.strength == 0.008
+    )
     of_scheme = SCHEMES[STABLE]["physics.local_potential"]["strength"]
     strengths = [found[text, key].strength for text, key in ((BARE, inner), (BARE, whole), (written, inner))]
     assert strengths == [of_scheme, 0.008, 0.01]

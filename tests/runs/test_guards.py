@@ -114,6 +114,7 @@ def test_what_happens_in_the_last_of_a_run_is_seen(tmp_path):
     lines = [*THROWN, "guards.speed=100.0", *LOOSE, "time.step=2e-4", "time.end=0.018"]
     trouble, _ = started(boxed(tmp_path, COMM, *lines), tmp_path / "run", COMM)
     assert "lost a particle at step 90, " in str(trouble)
+    assert "--set time.end=0.036` goes on from it" in report_of(tmp_path / "run")[0]
 
 
 def test_the_square_under_tension(tmp_path):
