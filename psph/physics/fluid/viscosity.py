@@ -298,9 +298,8 @@ class PairDamping(NamedTuple):
 class ImpactDamping(NamedTuple):
     """Numerical friction between neighbours that approach fast: it stops what hits a wall at up to c.
 
-    a_i = −β Σ_j ρ₀ m_j/(ρ_i ρ_j) e min(e, c) ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0), ρ₀ the
-    smaller of the pair's two rest densities: over a length h of matter a speed falls by e^β.  Faster than c
-    it grows in proportion, or a step would throw back what it should stop.  von
+    a_i = −β Σ_j ρ₀ m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0), ρ₀ the
+    smaller of the pair's two rest densities: over a length h of matter a speed falls by e^β.  von
     Neumann & Richtmyer (1950), J. Appl. Phys. 21, 232; for
     pairs, Monaghan (1989), J. Comput. Phys. 82, 1.  Theirs begins at once, and costs a rotating
     patch 1 % of its energy; with the onset water does not know of it.  It conserves momentum and
@@ -318,6 +317,5 @@ class ImpactDamping(NamedTuple):
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         strength = self.beta * (v_i * lighter(i, j))
         approach = -h * pair.u_dot_x * inverse_square(pair, h)
-        c = max(i.sound_speed, j.sound_speed)
-        excess = max(approach - ONSET * c, 0.0)
-        return -strength * v_j * (excess * min(excess, c)) * pair.m_dw_r
+        excess = max(approach - ONSET * max(i.sound_speed, j.sound_speed), 0.0)
+        return -strength * v_j * (excess * excess) * pair.m_dw_r

@@ -36,20 +36,20 @@ class WallApproach(NamedTuple):
             description="R: spacings within which the approach of fluid counts",
             json_schema_extra={"unit": "1"},
         ),
-    ] = 1.5
+    ] = 1.8
 
     def in_scene(self, scene: Facts):
         """The form that knows the spacing, where a fluid with a free surface may come to walls."""
         walls = [one for one in scene.species if not one.is_fluid]
-        strong = any(one.shear_modulus for one in scene.species)
-        if not walls or strong or several(scene) or not scene.has_free_surface:
+        held = any(one.shear_modulus or one.bonded is not None for one in scene.species)
+        if not walls or held or several(scene) or not scene.has_free_surface:
             return None
         h = scene.smoothing_length / scene.spacing
         return NearApproach(self.reach / h, h / BLENDS)
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
-        return "it needs walls or bodies, one fluid with a free surface, and no matter with an evolved stress"
+        return "it needs walls or bodies, one fluid with a free surface, and no solid or soil"
 
 
 class NearApproach(NamedTuple):
