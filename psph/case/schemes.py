@@ -23,7 +23,6 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.position_shift": 0.1,
         "physics.summation_density": 0.002,
         "physics.tension_floor": 0.98,
-        "physics.wall_approach": 1.8,
         "physics.background_pressure": "auto",
         "neighbours.skin": 0.16,
         "neighbours.least_skin": 0.04,
