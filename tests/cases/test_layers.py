@@ -86,6 +86,7 @@ def test_layers_that_slide_over_each_other_roll_up(density):
 
 
 @LONG
+@pytest.mark.xfail(strict=True, reason="0.89 to 0.92 in steps of two passes (docs/limits.md)")
 def test_finer_layers_do_so_about_as_fast():
     """100 spacings a wave: 0.93 of theory for 0.90."""
     wave = wave_of(case_of("kelvin_helmholtz", "space.spacing=0.01"), 0.8)

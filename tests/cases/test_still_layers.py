@@ -113,4 +113,4 @@ def test_sums_in_masses_do_not(tmp_path, monkeypatch):
     for module in (matter, continuity, correction, pressure, summation, free):
         monkeypatch.setattr(module, "several", lambda scene: False)
     with pytest.raises(BlowUp):
-        settled(start(draft(tmp_path, LAYERS, "fluids.light.density=100.0")), 300)
+        settled(start(draft(tmp_path, LAYERS, "fluids.light.density=100.0")), 600)
