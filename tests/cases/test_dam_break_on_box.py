@@ -32,25 +32,64 @@ def pressure_at_p1(folder, *sets):
 
 @pytest.mark.long
 @pytest.mark.timeout(1500)
-def test_arrival_and_plateau_of_the_pressure_on_the_box(tmp_path):
-    """Measured: 0.415 s and 2,978 Pa; here 0.434 s and 3,300 Pa.  The peak is several times too high (docs/limits.md),
-    so that it is bounded from below too: who mends it shall see it here."""
-    time, pressure = pressure_at_p1(tmp_path / "run")
-    measured_times, measured = read_experiment(load(BOX), "kleefsman_p1")
-    arrival = time[np.argmax(pressure > 500.0)]
-    assert arrival == pytest.approx(0.415, abs=0.02)
-    late = (time > END) & (time < 1.8)
-    plateau = np.interp(np.linspace(END, 1.8, 400), measured_times, measured).mean()
-    assert pressure[late].mean() == pytest.approx(plateau, rel=0.2)
-    peak = max(pressure[(time >= t) & (time < t + 0.02)].mean() for t in np.arange(BEGIN, END, 0.002))
-    assert 1.5 < peak / measured.max() < 4.0
+def test_arrival_of_the_front_at_the_box(tmp_path):
+    """Measured: 0.415 s; with 0.02 m 0.419 s, with 0.04 m, whose lowest row of water is as high as P1, 0.442 s."""
+    time, pressure = pressure_at_p1(
+        tmp_path / "run", "space.spacing=0.02", "time.end=0.44", "output.probes=0.001"
+    )
+    assert time[np.argmax(pressure > 500.0)] == pytest.approx(0.415, abs=0.02)
+
+
+@pytest.fixture(name="box", scope="module")
+def box_fixture(tmp_path_factory):
+    """The folder of a run to 1.8 s, and the measured pressure at P1 over time."""
+    folder = tmp_path_factory.mktemp("box") / "run"
+    pressure_at_p1(folder)
+    return folder, read_experiment(load(BOX), "kleefsman_p1")
+
+
+def late_mean(folder, column):
+    """The mean of a measured column behind the impact, Pa."""
+    table = Run(folder).measured(column)
+    late = (table["time"] > END) & (table["time"] < 1.8)
+    return np.nan_to_num(table[column])[late].mean()
 
 
 @pytest.mark.long
 @pytest.mark.timeout(1500)
-@pytest.mark.xfail(strict=True, reason="17 % too large in steps of two passes, 11 % in one (docs/limits.md)")
+def test_plateau_of_the_force_on_the_box(box):
+    """Over the area of the sensor; measured: 3,190 Pa, here 3,630."""
+    folder, (time, pressure) = box
+    measured = np.interp(np.linspace(END, 1.8, 400), time, pressure).mean()
+    assert late_mean(folder, "S1.pressure") == pytest.approx(measured, rel=0.2)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1500)
+@pytest.mark.xfail(strict=True, reason="the probe, a mean of the fluid that there is, is 25 % high")
+def test_plateau_of_the_pressure_on_the_box(box):
+    folder, (time, pressure) = box
+    measured = np.interp(np.linspace(END, 1.8, 400), time, pressure).mean()
+    assert late_mean(folder, "P1.pressure") == pytest.approx(measured, rel=0.2)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1500)
+def test_peak_of_the_pressure_on_the_box(box):
+    """The highest mean of 20 ms is 1.3 to 1.6 times the measured peak (docs/limits.md): it is bounded from below
+    too, so that who mends it sees it here."""
+    folder, (_, measured) = box
+    table = Run(folder).probes()
+    time, pressure = table["time"], np.nan_to_num(table["P1.pressure"])
+    peak = max(pressure[(time >= t) & (time < t + 0.02)].mean() for t in np.arange(BEGIN, END, 0.002))
+    assert 1.2 < peak / measured.max() < 2.0
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1500)
 def test_impulse_of_the_pressure_on_the_box(tmp_path):
-    """On average over four starts; measured 1,359 Pa s."""
+    """On average over four starts; measured 1,359 Pa s.  Here 1.00 of it, 0.90 to 1.06; without ``wall_approach``
+    1.17."""
     measured_times, measured = read_experiment(load(BOX), "kleefsman_p1")
     told = np.interp(np.linspace(BEGIN, END, 400), measured_times, measured)
     means = []

@@ -29,26 +29,17 @@ def peak(time, pressure):
     return max(pressure[np.abs(time - t) < 0.02].mean() for t in np.arange(2.3, 3.0, 0.01))
 
 
-def test_arrival_and_what_follows_the_impact(tmp_path):
+def test_arrival_and_peak_of_the_probe(tmp_path):
     """Of three starts, since single peaks scatter by a third.  Measured: the wall is met at 2.45, and P2 peaks at
-    1.96.  The mean of the fluid that there is peaks at twice as much (docs/limits.md); later the force on the same
-    area is 8 % too high."""
-    ran, measured = read_experiment(load(f"{CASES}/impact_pressure.toml"), "lobovsky_p2")
-    probes, later = [], []
+    1.96.  The mean of the fluid that there is peaks at 1.6 times as much (docs/limits.md)."""
+    probes = []
     for jitter in (0.01, 0.02, 0.03):
         time, pressure = told(tmp_path / f"{jitter}", f"fluids.water.jitter={jitter}")
-        late = (time > 2.8) & (time < 7.0)
-        median = np.interp(time[late], ran / CLOCK, measured / RHO_G_H).mean()
         assert time[np.argmax(pressure["P2"] > 0.1)] == pytest.approx(2.45, abs=0.05)
         probes.append(peak(time, pressure["P2"]))
-        later.append(pressure["S2"][late].mean() / median)
     assert 1.3 < np.mean(probes) / 1.96 < 2.5
-    assert np.mean(later) == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="2.4 on the mean of three starts in steps of two passes (docs/limits.md)"
-)
 def test_the_force_on_the_sensor_peaks_within_the_band(tmp_path):
     """The control: the mean of the fluid before it, nearly twice as high."""
     peaks = []
@@ -59,13 +50,15 @@ def test_the_force_on_the_sensor_peaks_within_the_band(tmp_path):
     assert BANDS["P2"][0] < sensor < BANDS["P2"][1] and sensor < 0.7 * probe
 
 
-@pytest.mark.xfail(strict=True, reason="the probe reads 18 % too much after the impact (docs/limits.md)")
-def test_what_follows_the_impact_at_the_probe(tmp_path):
+@pytest.mark.parametrize("name", ["P2", "S2"])
+@pytest.mark.xfail(strict=True, reason="a quarter and 18 % too high after the impact (docs/limits.md)")
+def test_what_follows_the_impact(tmp_path, name):
+    """Of the probe, and the force on the same area; with mirrors 40 % too high."""
     time, pressure = told(tmp_path / "run", "fluids.water.jitter=0.01")
     late = (time > 2.8) & (time < 7.0)
     ran, measured = read_experiment(load(f"{CASES}/impact_pressure.toml"), "lobovsky_p2")
     median = np.interp(time[late], ran / CLOCK, measured / RHO_G_H).mean()
-    assert pressure["P2"][late].mean() == pytest.approx(median, rel=0.1)
+    assert pressure[name][late].mean() == pytest.approx(median, rel=0.1)
 
 
 def test_mirrors_meet_the_measured_peaks(tmp_path):
