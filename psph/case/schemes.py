@@ -22,7 +22,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.local_potential": {"strength": 0.004, "threshold": 0.2},
         "physics.position_shift": 0.1,
         "physics.summation_density": 0.002,
-        "physics.wall_approach": 1.8,
+        "physics.wall_approach": 2.2,
         "physics.tension_floor": 0.98,
         "physics.background_pressure": "auto",
         "neighbours.skin": 0.16,

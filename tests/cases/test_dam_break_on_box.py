@@ -33,7 +33,7 @@ def pressure_at_p1(folder, *sets):
 @pytest.mark.long
 @pytest.mark.timeout(1500)
 def test_arrival_of_the_front_at_the_box(tmp_path):
-    """Measured: 0.415 s; with 0.02 m 0.419 s, with 0.04 m, whose lowest row of water is as high as P1, 0.442 s."""
+    """Measured: 0.415 s; with 0.02 m 0.420 s, with 0.04 m, whose lowest row of water is as high as P1, 0.442 s."""
     time, pressure = pressure_at_p1(
         tmp_path / "run", "space.spacing=0.02", "time.end=0.44", "output.probes=0.001"
     )
@@ -58,7 +58,7 @@ def late_mean(folder, column):
 @pytest.mark.long
 @pytest.mark.timeout(1500)
 def test_plateau_of_the_force_on_the_box(box):
-    """Over the area of the sensor; measured: 3,190 Pa, here 3,630."""
+    """Over the area of the sensor; measured: 3,190 Pa, here 3,560."""
     folder, (time, pressure) = box
     measured = np.interp(np.linspace(END, 1.8, 400), time, pressure).mean()
     assert late_mean(folder, "S1.pressure") == pytest.approx(measured, rel=0.2)
@@ -66,7 +66,7 @@ def test_plateau_of_the_force_on_the_box(box):
 
 @pytest.mark.long
 @pytest.mark.timeout(1500)
-@pytest.mark.xfail(strict=True, reason="the probe, a mean of the fluid that there is, is 25 % high")
+@pytest.mark.xfail(strict=True, reason="the probe, a mean of the fluid that there is, is 21 % high")
 def test_plateau_of_the_pressure_on_the_box(box):
     folder, (time, pressure) = box
     measured = np.interp(np.linspace(END, 1.8, 400), time, pressure).mean()
@@ -76,7 +76,7 @@ def test_plateau_of_the_pressure_on_the_box(box):
 @pytest.mark.long
 @pytest.mark.timeout(1500)
 def test_peak_of_the_pressure_on_the_box(box):
-    """The highest mean of 20 ms is 1.3 to 1.6 times the measured peak (docs/limits.md): it is bounded from below
+    """The highest mean of 20 ms is 1.2 to 1.6 times the measured peak (docs/limits.md): it is bounded from below
     too, so that who mends it sees it here."""
     folder, (_, measured) = box
     table = Run(folder).probes()
@@ -88,7 +88,7 @@ def test_peak_of_the_pressure_on_the_box(box):
 @pytest.mark.long
 @pytest.mark.timeout(1500)
 def test_impulse_of_the_pressure_on_the_box(tmp_path):
-    """On average over four starts; measured 1,359 Pa s.  Here 1.00 of it, 0.90 to 1.06; without ``wall_approach``
+    """On average over four starts; measured 1,359 Pa s.  Here 0.97 of it, 0.84 to 1.03; without ``wall_approach``
     1.17."""
     measured_times, measured = read_experiment(load(BOX), "kleefsman_p1")
     told = np.interp(np.linspace(BEGIN, END, 400), measured_times, measured)

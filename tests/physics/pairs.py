@@ -52,7 +52,6 @@ def view(n=2, dim=2, seed=3):
         smoothing_length=H,
         largest_speed=2.0,
         inside=np.resize((1.0, 0.0, 1.0), n),
-        fullness=np.resize((0.99, 0.95, 0.6), n),
         strain=tuple(rng.normal(size=n) * 30 for _ in range(dim * (dim + 1) // 2)),
         density_gradient=tuple(rng.normal(size=n) * 300 for _ in range(dim)),
         crowding=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),

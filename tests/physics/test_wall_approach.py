@@ -9,42 +9,28 @@ from gauging import start
 from physics.pairs import H, pair_of, view
 
 from psph.physics.fluid.continuity import Continuity
+from psph.physics.walls import approach
 from psph.physics.walls.approach import WallApproach
-from psph.smoothing import kernel
 
 DX = H / 1.4
 
 
 def in_scene(**other):
     alike = {"shear_modulus": 0.0, "density": 1000.0, "sound_speed": 50.0, "wave_speed": 50.0, "bonded": None}
-    alike |= {"bearing": True}
+    alike |= {"bearing": True, "extrapolated": False} | other.pop("both", {})
     wall, water = (SimpleNamespace(**alike, is_fluid=one, fluid=int(one)) for one in (False, True))
     facts = {"species": [water, wall], "smoothing_length": H, "spacing": DX, "has_free_surface": True}
-    facts |= {"dimensions": 2, "kernel": kernel("wendland-c2", H, 2)}
-    facts |= {"physics": SimpleNamespace(summation_density=SimpleNamespace(rate=0.0))}
-    return WallApproach(1.5).in_scene(SimpleNamespace(**facts | other))
+    return WallApproach(2.0).in_scene(SimpleNamespace(**facts | other))
 
 
 @pytest.mark.parametrize(
-    ("away", "touched", "part"),
-    [
-        (0.9, -9.0, 1.0),
-        (1.0, 0.0, 1.0),
-        (1.25, -3.0, 0.5),
-        (1.5, 0.0, 0.0),
-        (2.5, -9.0, 0.0),
-        (2.5, 0.5, 0.5),
-        (1.25, 0.5, 0.75),
-        (2.5, 1.0, 1.0),
-        (2.5, 2.0, 1.0),
-    ],
+    ("away", "part"),
+    [(0.5, 1.0), (0.6, 1.0), (0.95, 0.84375), (1.3, 0.5), (1.65, 0.15625), (2.0, 0.0), (2.7, 0.0)],
 )
-def test_a_dry_wall_counts_what_is_near_alone(away, touched, part):
-    """A half of it a quarter of a spacing before the reach, and the more the fuller the wall is; fluid counts
-    all, walls what walls do."""
+def test_a_wall_counts_what_is_near_alone(away, part):
+    """A half of it 0.7 spacings before the reach; fluid counts all, walls what walls do."""
     p, effect = view(n=2), in_scene()
     p = p._replace(position=(np.array([0.0, 0.8 * away * DX]), np.array([0.0, 0.6 * away * DX])))
-    p = p._replace(fullness=np.array([effect.dry + touched / effect.rise, 0.5]))
     for fluid, share in (((0.0, 1.0), part), ((1.0, 0.0), 1.0), ((1.0, 1.0), 1.0), ((0.0, 0.0), 1.0)):
         i, j, pair = pair_of(p._replace(is_fluid=np.array(fluid)), 0, 1, "wendland-c2")
         whole = Continuity().density_rate(i, j, pair)
@@ -52,16 +38,45 @@ def test_a_dry_wall_counts_what_is_near_alone(away, touched, part):
         assert whole + effect.density_rate(i, j, pair) == pytest.approx(share * whole, abs=1e-12 * abs(whole))
 
 
-def test_the_second_row_below_a_surface_is_dry_and_the_inside_is_not():
-    """At h/dx 1.4 in 2D it has 0.936 of the whole."""
-    assert in_scene().dry == pytest.approx(0.936, abs=1e-3)
-    assert in_scene().dry + 1.0 / in_scene().rise == pytest.approx(0.97)
+@pytest.mark.parametrize(
+    "other",
+    [{"has_free_surface": False}, {"both": {"extrapolated": True}}, {"both": {"bearing": False}}],
+    ids=["no surface", "extrapolated", "repulsive"],
+)
+def test_it_is_left_out_where_it_has_no_part(other):
+    assert in_scene(**other) is None
 
 
-def test_it_is_left_out_where_it_has_no_part():
-    """Without a surface, and where nothing tells which walls water touches."""
-    assert in_scene(has_free_surface=False) is None
-    assert in_scene(physics=SimpleNamespace(summation_density=None)) is None
+FILM = """
+space = { dimensions = 2, spacing = 0.02, periodic = ["x"], lower = [0.0, -0.2], upper = [0.6, 0.5] }
+time.end = 2.0
+physics.gravity = [0.0, -9.81]
+physics.sound_speed = 20.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [0.6, 0.02] }
+pressure = "hydrostatic"
+velocity = [0.5, 0.0]
+[walls.floor]
+shape.box = { lower = [0.0, -0.1], upper = [0.6, 0.0] }
+"""
+
+
+def stirred(folder, *sets):
+    """The speed of a film of one row that slides for 1.5 s, and its rms across, m/s."""
+    slides = start(draft(folder, FILM, *sets))
+    while slides.time < 1.5:
+        slides.step()
+    v = slides.store.shown("velocity")[slides.store.shown("kind") == 0]
+    return v[:, 0].mean(), np.sqrt((v[:, 1] ** 2).mean())
+
+
+def test_a_film_of_one_row_slides_on_a_bed(tmp_path, monkeypatch):
+    """The control: with an approach that comes to count over half a spacing it hops, and is braked."""
+    speed, across = stirred(tmp_path)
+    assert speed == pytest.approx(0.5, abs=0.001) and across < 0.001
+    monkeypatch.setattr(approach, "BLENDS", 0.5)
+    speed, across = stirred(tmp_path, "physics.wall_approach=1.8")
+    assert speed < 0.48 and across > 0.01
 
 
 DAM = """

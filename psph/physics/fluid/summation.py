@@ -57,8 +57,8 @@ class SummationDensity(NamedTuple):
         """The form that knows the lattice and the start."""
         if not _applies(scene):
             return None
-        rows, full = rows_below_a_surface(scene)
-        sparse, deepest = around_a_surface(rows)
+        *rows, full = moments_below_a_surface(scene.kernel, scene.spacing, scene.dimensions)
+        sparse, deepest = around_a_surface([row / full for row in rows])
         low, high = scene.starting_fullness
         return SummedOnLattice(self.rate, full, min(low, deepest), high, sparse)
 
@@ -110,18 +110,6 @@ class SummedOnLattice(NamedTuple):
     def linear(self, scene: Facts):
         """It does not act on a small disturbance."""
         return None
-
-
-def sums_fullness(scene: Facts) -> bool:
-    """Whether the particles of a scene know their fullness."""
-    return scene.physics.summation_density is not None and _applies(scene)
-
-
-def rows_below_a_surface(scene: Facts) -> tuple[list[float], float]:
-    """Fullness of the first, second ... row of the lattice below a plane surface; and Σ dx^d r W′ of a whole
-    lattice."""
-    *rows, full = moments_below_a_surface(scene.kernel, scene.spacing, scene.dimensions)
-    return [row / full for row in rows], full
 
 
 def around_a_surface(rows: list[float]) -> tuple[float, float]:
