@@ -361,13 +361,13 @@ class Engine:
         last = one.gives_rates and not one.holds
         held = [s[name] if last and own and name in s else None for name, own in zip(HELD, one.gives)] or NONE
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)), *held)
-        rest = None
+        rest = Unloaded(plan.materials.driven, s.group) if one.for_free else None
         parted = (kind.loops(one, self._sums[one.place], seen, sums) for kind in self.kinds)
         if own := next(filter(None, parted), None):
             yield from own
             return
         if one.gives_rates and not one.midway and plan.materials.loaded is not None:
-            rest = Unloaded(plan.materials.loaded, s.group)
+            rest = rest or Unloaded(plan.materials.loaded, s.group)
             reductions, written = one.reductions, sums.written
             couple = HELD_COUPLE.name if one.holds else COUPLE.name
             if couple in s and plan.loads is Loads:

@@ -29,6 +29,8 @@ class Materials(NamedTuple):
     """The kind, as frames tell them (psph.fields)."""
     free: np.uint8
     """How many groups move freely: these come first."""
+    driven: np.ndarray
+    """Whether its particles do not: they move as they are told, or not at all."""
     apart: np.ndarray
     """Whether its particles are in ordinary passes neither seen nor see others."""
     laws: tuple[Any, ...]
@@ -85,6 +87,7 @@ def materials_of(scene, states: Iterable[Entry], effects: Sequence) -> Materials
         species=species,
         kinds=tuple(one.kind for one in species),
         free=np.uint8(sum(one.mobile for one in species)),
+        driven=each(lambda one: not one.mobile),
         apart=each(lambda one: one.kind == OTHER),
         laws=tuple(law for _, law in own_laws),
         law_reasons=tuple(own_laws.values()),

@@ -33,7 +33,8 @@ class Pass(NamedTuple):
     (psph.particles.apart), and no other does.  A pass that fills the pressure of
     some particles ``settles`` their density too.  One that gives rates ``gives`` them to these two arrays, of
     the acceleration and of the rate of density, or None in the place of one.  One that is ``midway`` sums the
-    rate of density alone, at half of the step and before all others (psph.simulation.midway).
+    rate of density alone, at half of the step and before all others (psph.simulation.midway).  One is
+    ``for_free`` whose sums serve what moves freely alone: walls have none.
     """
 
     place: int
@@ -48,6 +49,7 @@ class Pass(NamedTuple):
     holds: bool = False
     gives: tuple[str | None, ...] = ()
     midway: bool = False
+    for_free: bool = False
 
     @property
     def settles(self) -> bool:
@@ -154,8 +156,16 @@ def make_passes(
     dense = tuple(effect for effect in effects if hasattr(effect, "density_rate"))
     read = frozenset(also).union(*(call.reads.in_density_rate for call in free))
     rate = _pass(0, dense, (), read, written, stored, seen_as, 1)
-    forces = last._replace(gives=(ACCELERATION.name, None))
-    return (rate._replace(gives=(None, DENSITY_RATE.name), midway=True), *passes, forces)
+    whole = (rate._replace(gives=(None, DENSITY_RATE.name), midway=True), *passes)
+    forces = last._replace(gives=(ACCELERATION.name, None), for_free=_serves_free(last, (*whole, last)))
+    return (*whole, forces)
+
+
+def _serves_free(forces: Pass, passes: tuple[Pass, ...]) -> bool:
+    """Whether the sums of a pass beside its ``forces`` displace particles alone: what any of the ``passes``
+    reads of a neighbour is not among them."""
+    shifts = all(hasattr(effect, "displacement") for effect in forces.reductions)
+    return shifts and not any(forces.written.intersection(one.neighbour_fields) for one in passes)
 
 
 def written_seldom(passes: tuple[Pass, ...]) -> frozenset[str]:

@@ -14,11 +14,17 @@ from psph.physics.walls.approach import WallApproach
 
 DX = H / 1.4
 
+BODY = 2.0
+SOLID = {0.0: 1.0, 1.0: 0.0, BODY: BODY}
+"""The number of a wall, a fluid and a body among what is solid."""
+
 
 def in_scene(**other):
     alike = {"shear_modulus": 0.0, "density": 1000.0, "sound_speed": 50.0, "wave_speed": 50.0, "bonded": None}
     alike |= {"bearing": True, "extrapolated": False} | other.pop("both", {})
-    wall, water = (SimpleNamespace(**alike, is_fluid=one, fluid=int(one)) for one in (False, True))
+    wall, water = (
+        SimpleNamespace(**alike, is_fluid=one, fluid=int(one), solid=1 - one) for one in (False, True)
+    )
     facts = {"species": [water, wall], "smoothing_length": H, "spacing": DX, "has_free_surface": True}
     return WallApproach(2.0).in_scene(SimpleNamespace(**facts | other))
 
@@ -28,11 +34,15 @@ def in_scene(**other):
     [(0.5, 1.0), (0.6, 1.0), (0.95, 0.84375), (1.3, 0.5), (1.65, 0.15625), (2.0, 0.0), (2.7, 0.0)],
 )
 def test_a_wall_counts_what_is_near_alone(away, part):
-    """A half of it 0.7 spacings before the reach; fluid counts all, walls what walls do."""
+    """A half of it 0.7 spacings before the reach; fluid and bodies count all, walls what walls do."""
     p, effect = view(n=2), in_scene()
     p = p._replace(position=(np.array([0.0, 0.8 * away * DX]), np.array([0.0, 0.6 * away * DX])))
-    for fluid, share in (((0.0, 1.0), part), ((1.0, 0.0), 1.0), ((1.0, 1.0), 1.0), ((0.0, 0.0), 1.0)):
-        i, j, pair = pair_of(p._replace(is_fluid=np.array(fluid)), 0, 1, "wendland-c2")
+    kinds = (0.0, 1.0, part), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0), (0.0, 0.0, 1.0)
+    for own, other, share in (*kinds, (BODY, 1.0, 1.0)):
+        q = p._replace(
+            is_fluid=np.array([own == 1.0, other], float), solid=np.array([SOLID[own], SOLID[other]])
+        )
+        i, j, pair = pair_of(q, 0, 1, "wendland-c2")
         whole = Continuity().density_rate(i, j, pair)
         assert whole != 0.0
         assert whole + effect.density_rate(i, j, pair) == pytest.approx(share * whole, abs=1e-12 * abs(whole))

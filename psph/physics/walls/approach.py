@@ -10,6 +10,9 @@ from psph.physics.facts import Facts
 from psph.physics.fluid.several import several
 from psph.physics.walls.conditions import DYNAMIC
 
+WALL = 1.0
+"""Number of a wall among what is solid (psph.fields)."""
+
 BLENDS = 1.4
 """Spacings over which the approach comes to count.  Over 0.5 the sum over a row that slides along a wall has
 ripples of 1.3 %, on which a film of one row leaves it; over 1.4 of 0.05 %, as the whole sum."""
@@ -23,7 +26,8 @@ class WallApproach(NamedTuple):
     by what comes within the support, stops it there, and gives the excess back in some milliseconds: a tongue
     glides one to two spacings above a dry bed, and strikes the next wall from there.  Of fluid that touches
     the wall the rows behind the first hardly count either; their pressure comes by diffusion.  The fluid
-    feels the wall as before.  psph's own.
+    feels the wall as before.  Rigid bodies count all: the film under one that sinks to a floor would be
+    crushed between two that do not.  psph's own.
     """
 
     acts = (FLUIDS, DYNAMIC)
@@ -41,7 +45,7 @@ class WallApproach(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """The form that knows the spacing, where a fluid with a free surface may come to dynamic walls."""
-        walls = [one for one in scene.species if one.bearing and not (one.is_fluid or one.extrapolated)]
+        walls = [one for one in scene.species if one.solid == WALL and one.bearing and not one.extrapolated]
         held = any(one.shear_modulus or one.bonded is not None for one in scene.species)
         if not walls or held or several(scene) or not scene.has_free_surface:
             return None
@@ -50,7 +54,7 @@ class WallApproach(NamedTuple):
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
-        return "it needs dynamic walls or bodies, one fluid with a free surface, and no solid or soil"
+        return "it needs dynamic walls, one fluid with a free surface, and no solid or soil"
 
 
 class NearApproach(NamedTuple):
@@ -66,7 +70,7 @@ class NearApproach(NamedTuple):
         """What a wall leaves out of one neighbour's share of dρ_i/dt, kg/(m^d s)."""
         x = min(max((self.reach - pair.r / i.smoothing_length) * self.steepness, 0.0), 1.0)
         left = (1.0 - x * x * (3.0 - 2.0 * x)) * j.is_fluid
-        return where(i.is_fluid > 0.0, 0.0, -left * (pair.u_dot_x * pair.m_dw_r))
+        return where(i.solid == WALL, -left * (pair.u_dot_x * pair.m_dw_r), 0.0)
 
     def linear(self, scene: Facts):
         """Linear theory knows of no walls."""
