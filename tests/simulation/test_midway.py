@@ -241,6 +241,16 @@ def test_lists_made_at_the_middle_of_a_step_stand_shifts_to_its_end(tmp_path):
     assert 0.5 < max(apart) < 1.0 and 2 < ran.domain.rebuilds < 40
 
 
+@pytest.mark.parametrize(("passes", "of_walls"), [(2, False), (1, True)])
+def test_forces_are_summed_on_what_moves_alone(tmp_path, passes, of_walls):
+    """The control: in one pass with the rate of density they are summed on walls too, where nobody reads them."""
+    tank = start(draft(tmp_path, DAM, f"time.passes={passes}"))
+    tank.step()
+    size = np.abs(tank.store.shown("acceleration")).max(axis=1)
+    walls = tank.store.shown("kind") == 1
+    assert (size[walls].max() > 0.0) == of_walls and size[~walls].max() > 0.0
+
+
 def test_it_asks_for_no_history_and_sends_no_more_than_what_has_moved(tmp_path):
     one, two = (begun(in_passes(STIRRED, passes), tmp_path).plan for passes in (1, 2))
     assert one.midway is None and two.midway is two.passes[0]

@@ -65,6 +65,21 @@ def test_a_pressure_that_a_pass_tells_settles_the_density_and_travels_twice():
     assert first.brought == () and set(last.brought) == {"pressure", "specific_volume"}
 
 
+def test_forces_of_two_passes_are_summed_on_what_moves_alone():
+    """Unless a sum beside them does more than displace, or is read of a neighbour."""
+    displaces = {"displacement": None, "lagged": True}
+
+    def last(*called, midway=True):
+        return make_passes(called, STORED, lambda name: name, midway=midway)[-1]
+
+    assert last(effect(A, **displaces)).for_free
+    assert not last(effect(A, **displaces), midway=False).for_free
+    assert not last(effect(A, lagged=True)).for_free
+    reads = effect(A, in_rates="a", neighbour="a", **displaces)
+    for where in ("beside", "in_density_rate"):
+        assert not last(reads._replace(reads=reads.reads._replace(**{where: frozenset("a")}))).for_free
+
+
 def test_what_is_read_of_the_particle_alone_does_not_travel():
     _, last = passes_of(effect(A, in_rates="a"))
     assert last.brought == () and "a" not in last.neighbour_fields
