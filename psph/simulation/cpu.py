@@ -368,7 +368,7 @@ class Engine:
             return
         if one.gives_rates and not one.midway and plan.materials.loaded is not None:
             rest = rest or Unloaded(plan.materials.loaded, s.group)
-            reductions, written = one.reductions, sums.written
+            reductions, written = ((), ()) if one.for_free else (one.reductions, sums.written)
             couple = HELD_COUPLE.name if one.holds else COUPLE.name
             if couple in s and plan.loads is Loads:
                 reductions, written = (*reductions, Couple(one.effects)), (*written, s[couple])
