@@ -21,7 +21,7 @@ SOLID = {0.0: 1.0, 1.0: 0.0, BODY: BODY}
 
 def in_scene(**other):
     alike = {"shear_modulus": 0.0, "density": 1000.0, "sound_speed": 50.0, "wave_speed": 50.0, "bonded": None}
-    alike |= {"bearing": True, "extrapolated": False} | other.pop("both", {})
+    alike |= {"bearing": True, "extrapolated": False, "tensions": ()} | other.pop("both", {})
     wall, water = (
         SimpleNamespace(**alike, is_fluid=one, fluid=int(one), solid=1 - one) for one in (False, True)
     )
@@ -50,8 +50,13 @@ def test_a_wall_counts_what_is_near_alone(away, part):
 
 @pytest.mark.parametrize(
     "other",
-    [{"has_free_surface": False}, {"both": {"extrapolated": True}}, {"both": {"bearing": False}}],
-    ids=["no surface", "extrapolated", "repulsive"],
+    [
+        {"has_free_surface": False},
+        {"both": {"extrapolated": True}},
+        {"both": {"bearing": False}},
+        {"both": {"tensions": (0.07,)}},
+    ],
+    ids=["no surface", "extrapolated", "repulsive", "tension"],
 )
 def test_it_is_left_out_where_it_has_no_part(other):
     assert in_scene(**other) is None

@@ -27,7 +27,8 @@ class WallApproach(NamedTuple):
     glides one to two spacings above a dry bed, and strikes the next wall from there.  Of fluid that touches
     the wall the rows behind the first hardly count either; their pressure comes by diffusion.  The fluid
     feels the wall as before.  Rigid bodies count all: the film under one that sinks to a floor would be
-    crushed between two that do not.  psph's own.
+    crushed between two that do not.  So do walls beside a fluid with a tension: a short bridge between plates
+    would lean on and break (Vogel's limit).  psph's own.
     """
 
     acts = (FLUIDS, DYNAMIC)
@@ -47,14 +48,17 @@ class WallApproach(NamedTuple):
         """The form that knows the spacing, where a fluid with a free surface may come to dynamic walls."""
         walls = [one for one in scene.species if one.solid == WALL and one.bearing and not one.extrapolated]
         held = any(one.shear_modulus or one.bonded is not None for one in scene.species)
-        if not walls or held or several(scene) or not scene.has_free_surface:
+        clings = any(any(one.tensions) for one in scene.species)
+        if not walls or held or clings or several(scene) or not scene.has_free_surface:
             return None
         h = scene.smoothing_length / scene.spacing
         return NearApproach(self.reach / h, h / BLENDS)
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
-        return "it needs dynamic walls, one fluid with a free surface, and no solid or soil"
+        return (
+            "it needs dynamic walls, one fluid with a free surface and without tension, and no solid or soil"
+        )
 
 
 class NearApproach(NamedTuple):
