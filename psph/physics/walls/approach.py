@@ -47,9 +47,9 @@ class WallApproach(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows the spacing, where a fluid with a free surface may come to dynamic walls."""
         walls = [one for one in scene.species if one.solid == WALL and one.bearing and not one.extrapolated]
-        held = any(one.shear_modulus or one.bonded is not None for one in scene.species)
-        clings = any(any(one.tensions) for one in scene.species)
-        if not walls or held or clings or several(scene) or not scene.has_free_surface:
+        bears = any(one.shear_modulus or one.bonded is not None for one in scene.species)
+        pulls = any(any(one.tensions) for one in scene.species)
+        if not walls or bears or pulls or several(scene) or not scene.has_free_surface:
             return None
         h = scene.smoothing_length / scene.spacing
         return NearApproach(self.reach / h, h / BLENDS)
