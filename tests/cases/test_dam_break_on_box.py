@@ -55,22 +55,17 @@ def late_mean(folder, column):
     return np.nan_to_num(table[column])[late].mean()
 
 
-@pytest.mark.long
-@pytest.mark.timeout(1500)
-def test_plateau_of_the_force_on_the_box(box):
-    """Over the area of the sensor; measured: 3,190 Pa, here 3,560."""
-    folder, (time, pressure) = box
-    measured = np.interp(np.linspace(END, 1.8, 400), time, pressure).mean()
-    assert late_mean(folder, "S1.pressure") == pytest.approx(measured, rel=0.2)
+HIGH = pytest.mark.xfail(strict=True, reason="the probe, a mean of the fluid that there is, is 21 % high")
 
 
 @pytest.mark.long
 @pytest.mark.timeout(1500)
-@pytest.mark.xfail(strict=True, reason="the probe, a mean of the fluid that there is, is 21 % high")
-def test_plateau_of_the_pressure_on_the_box(box):
+@pytest.mark.parametrize("column", ["S1.pressure", pytest.param("P1.pressure", marks=HIGH)])
+def test_plateau_of_the_pressure_on_the_box(box, column):
+    """Measured: 3,190 Pa; the force over the area of the sensor, S1, is 3,560 here, the probe P1 3,850."""
     folder, (time, pressure) = box
     measured = np.interp(np.linspace(END, 1.8, 400), time, pressure).mean()
-    assert late_mean(folder, "P1.pressure") == pytest.approx(measured, rel=0.2)
+    assert late_mean(folder, column) == pytest.approx(measured, rel=0.2)
 
 
 @pytest.mark.long
