@@ -114,6 +114,8 @@ BAR = "solids.bar={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, density=1900.0
 
 VISCOUS = "fluids.water.viscosity=0.001"
 
+DRY = "walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}}"
+
 STICKY = ("walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}, no_slip=true}", VISCOUS)
 """Overrides: a wall without slip, and the friction that it needs."""
 
@@ -137,6 +139,8 @@ def calling_for(entry) -> list[str]:
         slippery = STICKY[0].replace(", no_slip=true", "")
         angle = "{advancing=70.0,receding=50.0}" if entry.effect.__name__ == "LineMemory" else "60.0"
         return [slippery, "fluids.water.surface_tension=0.001", f"walls.side.contact_angle={angle}"]
+    if key == "physics.wall_approach":
+        return [DRY, f"{key}=2.2"]
     if key.startswith("walls."):
         return [*STICKY, *(["walls.side.no_slip=false", f"walls.side.condition={choice}"] if choice else [])]
     if choice:
