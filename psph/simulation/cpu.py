@@ -72,7 +72,7 @@ class Engine:
             scene.layout.periods,
             plan.pulls.booked,
             next((work.own_steps for work in self.kinds if work.own_steps), None),
-            plan.lead,
+            plan.ahead,
         )
         self._midway_rules = self._rules._replace(poses=self.poses.middle)
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)

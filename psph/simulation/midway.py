@@ -2,21 +2,24 @@
 
     v½ = v + Δt/2 a,  x½ = x + Δt/2 v½                        kick, half a drift
     ρ̇ from x½, v½, ρ                                           pass
-    ρ ← ρ + Δt ρ̇,  x ← x½ + Δt/2 v½,  v̂ = v½ + Δt/2 a       drift
+    ρ ← ρ + Δt ρ̇,  x ← x½ + Δt/2 v½,  v̂ = v½ + ηΔt a         drift
     a from x, v̂, ρ, p(ρ + εΔt ρ̇)                               pass
     v = v½ + Δt/2 a                                            kick
 
 Density and velocity leap over each other, so sound neither grows nor decays for ωΔt < 2, where a step of one
 pass (psph.simulation.integrator) is stable to 0.78.  With a ``lead`` ε the pressure is that of the density ε
 steps later: sound loses ½ε(ωΔt)² of its amplitude a step, as by a bulk viscosity εc²Δt, which what keeps its
-density does not feel, for no sum more; stable for (1 + 2ε)(ωΔt)² < 4.  What moves all as one, or turns,
-keeps its density: x½ is the middle of the chord from x to the new x, and v½ its length over Δt.  What moves
-as a whole goes along chords too; walls that deform stand where their motion has them.  A shift beside the
+density does not feel, for no sum more; stable for (1 + 2ε)(ωΔt)² < 4.  Friction reads v̂: with η = ½ it is of
+second order in time, by extrapolation, and stable for γΔt < 1; with η = 0, beside a free surface, where sound
+is fastest, of first order and stable for γΔt < 2.  What moves all as one, or turns, keeps its density: x½ is
+the middle of the chord from x to the new x, and v½ its length over Δt.  What moves as a whole goes along chords
+too; walls that deform stand where their motion has them.  A shift beside the
 velocity is halved as the drift is.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
 """
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,7 +40,20 @@ COMING = Field("coming", "m", "way from the middle of the step to its end", VECT
 
 FASTEST = 1.16
 """ωΔt of the fastest sound on the lattice in a step with a lead, at the most.  The default scheme has 1.12 in
-2D and 1.15 in 3D; at 1.35 still water boils."""
+2D and 1.15 in 3D where one fluid fills the domain: longer steps cost vortices accuracy."""
+
+AT_A_SURFACE = 1.075
+"""Steps are so many times longer beside a free surface, where friction reads v½.  There corrected gradients
+make sound a quarter faster than inside, and still water boils at 1.18: tests/theory/test_surface_steps.py."""
+
+
+class Ahead(NamedTuple):
+    """By which part of a step what forces read is ahead: ``pressure`` of the density, ``velocity`` of the
+    middle of the step."""
+
+    pressure: float = 0.0
+    velocity: float = 0.5
+
 
 WORTH = 1.6
 """A step of two passes takes so many times as long as one of one pass."""
@@ -68,12 +84,20 @@ def why_one_pass(scene, effects: tuple, kinds, extremes) -> str:
 
 def cfl_of(scene, passes: int) -> float:
     """The longest step of so many ``passes`` over h/(c + max|v|): ``time.cfl`` for each, of two with a lead
-    no longer than the fastest sound bears."""
+    no longer than the fastest sound bears, and longer beside a free surface."""
     cfl = scene.case.time.cfl * passes
-    if passes == 1 or not scene.case.time.lead:
+    if passes == 1:
         return cfl
-    fastest = fastest_wave(scene.kernel, scene.spacing, scene.dimensions)
-    return min(cfl, FASTEST / (scene.smoothing_length * fastest))
+    longer = AT_A_SURFACE if scene.has_free_surface else 1.0
+    if scene.case.time.lead:
+        fastest = fastest_wave(scene.kernel, scene.spacing, scene.dimensions)
+        cfl = min(cfl, FASTEST / (scene.smoothing_length * fastest))
+    return longer * cfl
+
+
+def ahead_of(scene) -> Ahead:
+    """What forces read ahead of time in a scene whose steps take two passes."""
+    return Ahead(scene.case.time.lead, 0.0 if scene.has_free_surface else 0.5)
 
 
 def _why_it_does_not_pay(scene, effects: tuple, extremes) -> str:
@@ -165,10 +189,10 @@ def drift_to_end(first, last, time, dt, rules, view, columns):
         i, group = take(view, k), c.group[k]
         rate = dt * c.density_rate[k]
         rho = c.density[k] + rate
-        ahead = rho + rules.lead * rate
+        ahead = rho + rules.ahead.pressure * rate
         if group < rules.free:
             v = at(c.velocity, k)
-            put(c.predicted_velocity, k, add(v, scale(at(c.acceleration, k), 0.5 * dt)))
+            put(c.predicted_velocity, k, add(v, scale(at(c.acceleration, k), rules.ahead.velocity * dt)))
             put(c.position, k, add(at(c.position, k), half_a_move(rules, i, v, dt)))
             rho, ahead = limit_density(rules.effects, i, rho), limit_density(rules.effects, i, ahead)
         else:

@@ -32,7 +32,7 @@ from psph.scene.gauging import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import limits_of_effects, step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
-from psph.simulation.midway import COMING, HISTORY, cfl_of, is_midway
+from psph.simulation.midway import COMING, HISTORY, Ahead, ahead_of, cfl_of, is_midway
 from psph.simulation.movement import carried_fields
 from psph.simulation.paces import held_fields, held_parts, is_held, steps_held
 from psph.simulation.passes import Pass, array_of, make_passes
@@ -115,8 +115,8 @@ class Plan:
     renewed: tuple[str, ...]
     """What ghosts need of it that kinds of matter fill anew just before the sums."""
     cfl: float
-    lead: float
-    """By how many steps pressures are ahead of the density (psph.simulation.midway)."""
+    ahead: Ahead | None
+    """By which parts of a step what forces read is ahead, None in one pass (psph.simulation.midway)."""
     fixed_step: float | None
     extremes: Any
     """The scene's shared values, and the largest of those that differ by material."""
@@ -384,7 +384,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         loads=next((how for kind in matter if (how := kind.loads(passes))), Loads),
         renewed=tuple(name for name in refreshed if name in renewed),
         cfl=cfl_of(scene, rate_passes),
-        lead=case.time.lead if midway else 0.0,
+        ahead=ahead_of(scene) if midway else None,
         fixed_step=case.time.step,
         extremes=extremes,
         kept=kept_in_frames(scene, stored),

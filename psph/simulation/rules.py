@@ -21,8 +21,8 @@ class Rules(NamedTuple):
     None; ``frame`` is what a moving frame of reference adds to gravity, or None.  ``periods`` m, None for
     an open axis.  ``given_pressure`` are the groups to which a pass gives their pressure; ``booked`` are
     effects whose work on particles is booked; ``own`` are steps of their own that groups take
-    (psph.simulation.own_steps), or None.  ``lead``: by how many steps pressures are ahead of the density
-    where the rate of density is that of the middle of a step.
+    (psph.simulation.own_steps), or None.  ``ahead``: by which parts of a step what forces read is ahead
+    where the rate of density is that of its middle (psph.simulation.midway), else None.
     """
 
     effects: tuple
@@ -38,7 +38,7 @@ class Rules(NamedTuple):
     periods: tuple
     booked: tuple = ()
     own: Any = None
-    lead: float = 0.0
+    ahead: Any = None
 
 
 class Columns(NamedTuple):

@@ -17,28 +17,30 @@ from psph.runs.hints import plan_warnings
 from psph.scene import Scene
 from psph.simulation import midway
 from psph.simulation.integrator import kick
-from psph.simulation.midway import HISTORY, drift_to_end, kick_to_middle
+from psph.simulation.midway import HISTORY, Ahead, drift_to_end, kick_to_middle
 from psph.simulation.plan import make_plan
 from psph.simulation.rules import Columns
 
 
-def swing(theta, steps, decay=0.0, lead=0.0):
+def swing(theta, steps, decay=0.0, lead=0.0, braked=0.0, predicted=0.5):
     """The largest amplitude in ``steps`` steps of ωΔt = ``theta``, from 1, where density also decays by
-    ``decay`` of its value a step, as by diffusion, and pressures have a ``lead``; real compiled loops."""
-    rules = RULES._replace(lead=lead)
+    ``decay`` of its value a step, as by diffusion, velocity as friction would have it by ``braked``, that
+    reads what is ``predicted`` so many steps after the middle, and pressures have a ``lead``; real
+    compiled loops."""
+    rules = RULES._replace(ahead=Ahead(lead, predicted))
     group = np.zeros(1, np.uint8)
-    x, v, predicted, a = ((np.zeros(1),) for _ in range(4))
+    x, v, seen_v, a = ((np.zeros(1),) for _ in range(4))
     density, rate, volume, pressure = np.ones(1), np.zeros(1), np.ones(1), np.zeros(1)
     v[0][0] = 1.0
-    view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
-    told = group, None, x, v, predicted, a, density, rate, None, None, volume, pressure
+    view = seen(position=x, velocity=seen_v, rest_density=1.0, sound_speed=1.0)
+    told = group, None, x, v, seen_v, a, density, rate, None, None, volume, pressure
     columns = Columns(*told, coming=(np.zeros(1),))
     largest = 0.0
     for _ in range(steps):
         kick_to_middle(0, 1, 0.0, 1.0, rules, view, columns)
-        rate[0] = theta * predicted[0][0] - decay * (density[0] - 1.0)
+        rate[0] = theta * seen_v[0][0] - decay * (density[0] - 1.0)
         drift_to_end(0, 1, 0.0, 1.0, rules, view, columns)
-        a[0][0] = -theta * pressure[0]
+        a[0][0] = -theta * pressure[0] - braked * seen_v[0][0]
         kick(0, 1, 0.0, 1.0, None, rules, view, columns)
         largest = max(largest, np.hypot(v[0][0], density[0] - 1.0))
     return largest, np.hypot(v[0][0], density[0] - 1.0)
@@ -78,6 +80,29 @@ def test_a_lead_takes_room_from_the_step():
     assert not swing(1.44, 2000, decay=0.85, lead=0.1)[0] < 1e3  # the control
 
 
+def test_friction_has_twice_the_room_where_it_reads_the_middle():
+    """(1 + 2ε)θ² < (2 − γ(1 + 2η))(2 − d) for friction that takes γ of the velocity a step.  The controls: by predicted
+    velocities, η = ½, and a faster sound."""
+    room = {"decay": 0.5, "lead": 0.05, "braked": 0.4}
+    assert swing(1.4, 2000, predicted=0.0, **room)[1] < 1e-3
+    assert not swing(1.4, 400, predicted=0.5, **room)[0] < 1e3
+    assert not swing(1.5, 400, predicted=0.0, **room)[0] < 1e3
+
+
+@pytest.mark.parametrize("longer, boils", [(midway.AT_A_SURFACE, False), (1.2, True)])
+def test_still_water_bears_the_step_that_a_surface_has(tmp_path, monkeypatch, longer, boils):
+    """From the sixth step on the control grows at its surface, by 1.2 a step, as linear theory has it
+    (tests/theory/test_surface_steps.py)."""
+    monkeypatch.setattr(midway, "AT_A_SURFACE", longer)
+    still = start(load("run/cases/hard/tank.toml"))
+    while still.time < 0.3:
+        still.step()
+    fastest = np.abs(by_id(still, "velocity")).max()
+    assert (
+        still.plan.ahead.velocity == 0.0 and (fastest > 0.3) == boils and fastest < (9.0 if boils else 0.02)
+    )
+
+
 def test_a_particle_goes_along_the_chord_and_its_velocity_is_that_of_the_chord():
     group = np.zeros(1, np.uint8)
     x, v, predicted, a = (tuple(np.zeros(1) for _ in range(2)) for _ in range(4))
@@ -91,7 +116,7 @@ def test_a_particle_goes_along_the_chord_and_its_velocity_is_that_of_the_chord()
     half = [c[0] for c in x]
     told_end = [here[0] + left[0] for here, left in zip(x, columns.coming)]
     chord = [c[0] for c in predicted]
-    drift_to_end(0, 1, 0.0, 0.1, RULES, view, columns)
+    drift_to_end(0, 1, 0.0, 0.1, RULES._replace(ahead=Ahead()), view, columns)
     end = [c[0] for c in x]
     assert chord == pytest.approx([0.8, 2.3]) and density[0] == pytest.approx(2.3)
     assert half == pytest.approx(0.5 * (np.array([0.3, -0.2]) + end)) and told_end == end
@@ -162,7 +187,7 @@ def test_nor_does_it_where_pressures_are_ahead(tmp_path):
     """Walls give no density to where they bear no pressure: by that of the density, and not that ahead of it, water
     went elsewhere by a spacing and a half in half a second, and on other ranks."""
     unseen, shown = (start(draft(tmp_path, DAM)) for _ in range(2))
-    assert unseen.plan.midway and unseen.plan.lead > 0.0
+    assert unseen.plan.midway and unseen.plan.ahead.pressure > 0.0
     while unseen.time < 0.45:
         unseen.step()
         shown.step()
@@ -184,7 +209,7 @@ def test_the_default_takes_two_passes_where_they_pay(tmp_path):
         scene = Scene(draft(tmp_path, DAM, *sets))
         plan = make_plan(scene)
         assert plan.rate_passes == (1 if why else 2), sets
-        assert (plan.lead > 0.0) == (not why) and why in "\n".join(explain(scene, 1))
+        assert (plan.ahead is None) == bool(why) and why in "\n".join(explain(scene, 1))
 
 
 def test_a_given_step_is_told_beside_what_it_does_not_heed(tmp_path):
@@ -257,7 +282,10 @@ def test_it_asks_for_no_history_and_sends_no_more_than_what_has_moved(tmp_path):
     assert {f.name for f in HISTORY} == set(one.arrays) - set(two.arrays)
     assert two.midway.moved == ("position", "predicted_velocity")
     assert one.refreshed == two.refreshed
-    assert two.cfl == 2.0 * one.cfl and two.midway.gives == (None, "density_rate")
+    assert two.cfl == pytest.approx(2.0 * midway.AT_A_SURFACE * one.cfl) and two.midway.gives == (
+        None,
+        "density_rate",
+    )
     assert two.passes[-1].gives == ("acceleration", None)
 
 
