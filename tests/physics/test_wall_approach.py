@@ -116,12 +116,16 @@ def lowest_rows(simulation, width):
 
 
 def test_a_tongue_lies_on_a_dry_bed(tmp_path):
-    """0.7 dx above it on the mean, half a spacing on a lattice.  The control: walls that count all."""
-    found = []
+    """0.65 dx above it on the mean over five times, half a spacing on a lattice.  The control: walls that count
+    all."""
+    mean, highest = [], []
     for sets in ((), ("physics.wall_approach=off",)):
-        falls = start(draft(tmp_path, DAM, *sets))
-        while falls.time < 0.34:
-            falls.step()
-        found.append(lowest_rows(falls, 0.04))
-    assert found[0].mean() < 0.85 and found[0].max() < 1.7
-    assert found[1].mean() > 1.0 and found[1].max() > 1.9
+        falls, seen = start(draft(tmp_path, DAM, *sets)), []
+        for time in (0.32, 0.325, 0.33, 0.335, 0.34):
+            while falls.time < time:
+                falls.step()
+            seen.append(lowest_rows(falls, 0.04))
+        mean.append(np.mean([one.mean() for one in seen]))
+        highest.append(np.mean([one.max() for one in seen]))
+    assert mean[0] < 0.75 and highest[0] < 1.5, (mean, highest)
+    assert mean[1] > 0.9 and highest[1] > 1.9, (mean, highest)
