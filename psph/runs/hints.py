@@ -27,7 +27,7 @@ def hints(scene, plan: Plan) -> Iterator[str]:
 
 
 def plan_warnings(scene, plan: Plan, ranks: int) -> Iterator[str]:
-    """For `check`, what only the plan of a scene tells: keys of the time that do nothing in it, and a run on
+    """For `check`, what only the plan of a scene tells: keys that do nothing in it, and a run on
     so many ``ranks`` that takes long.
     """
     for line in _served_in_vain(scene, plan):
@@ -58,11 +58,25 @@ def _served_in_vain(scene, plan: Plan) -> Iterator[str]:
         )
     if time.lead and not plan.midway and not scene.case.preset("time.lead"):
         yield f"time.lead: {time.lead:g} does nothing in steps of one pass; set time.passes = 2, or remove it"
+    yield from _left_out(scene, plan)
     if time.damping_every > plan.rate_passes and not _bears_held(plan):
         yield (
             f"time.damping_every: {time.damping_every} does nothing: what is in the scene needs friction in "
             "each step, or has none; remove it"
         )
+
+
+def _left_out(scene, plan: Plan) -> Iterator[str]:
+    """Keys of [physics] that the case itself gives and of which no effect is in the scene."""
+    absent, case = {entry.key: entry.effect for entry in plan.absent}, scene.case
+    served = {one.key for one in case.catalogue.effects if one not in plan.absent}
+    for key, effect in absent.items():
+        table, _, name = key.partition(".")
+        why = plan.dropped.get(effect.__name__, "").partition(": ")[2]
+        alone = key not in served and not getattr(effect, "shares_key", False)
+        given = table == "physics" and name in case.physics.model_fields_set and not case.preset(key)
+        if why and given and alone:
+            yield f"{key} does nothing here: {why}; remove it"
 
 
 def _bears_held(plan: Plan) -> bool:

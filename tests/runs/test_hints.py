@@ -3,6 +3,7 @@
 import pytest
 from drafts import SQUARE, TANK, draft
 
+from psph.case import load
 from psph.runs.hints import hints, plan_warnings
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -93,3 +94,30 @@ def test_keys_of_the_time_that_do_nothing_are_warned_of_once(tmp_path, text, ask
 def test_keys_of_the_time_that_do_something_are_not_warned_of(tmp_path):
     scene = Scene(draft(tmp_path, TANK, "scheme=stable", "time.passes=2", "time.damping_every=4"))
     assert not [*plan_warnings(scene, make_plan(scene), 1)]
+
+
+DOES_NOTHING = ("physics.wall_approach=2.0", "physics.tension_floor=0.9")
+
+
+@pytest.mark.parametrize("key", DOES_NOTHING)
+def test_a_key_whose_effect_is_left_out_is_warned_of(tmp_path, key):
+    """Where the case gives it.  The controls: what the scheme sets, and both in a tank, where they act."""
+    closed = ("space.periodic=['x', 'y']", "space.lower=[0.0, 0.0]", "space.upper=[1.0, 1.0]")
+    closed += ("physics.sound_speed=10.0", "scheme=stable")
+    name = key.partition("=")[0]
+    for text, keys, told in (
+        (SQUARE, (*closed, key), True),
+        (SQUARE, closed, False),
+        (TANK, ("scheme=stable", key), False),
+    ):
+        scene = Scene(draft(tmp_path, text, *keys))
+        lines = [line for line in plan_warnings(scene, make_plan(scene), 1) if name in line]
+        assert len(lines) == told and all(line.endswith("; remove it") for line in lines)
+        assert all(f"{scene.case.file}: {name} does nothing here: " in line for line in lines)
+
+
+def test_a_key_that_serves_what_is_no_effect_is_not_warned_of():
+    """Bodies meet by impulses, with the friction of the key that elastic solids have too."""
+    scene = Scene(load("run/cases/coast/armour.toml"))
+    plan = make_plan(scene)
+    assert plan.dropped["SolidContact"] and not [*plan_warnings(scene, plan, 1)]

@@ -92,6 +92,7 @@ class SolidContact(NamedTuple):
     """
 
     acts = (SOLIDS, BODIES)
+    shares_key = True
     refuses = {
         UPDATED: 'updated Lagrangian solids feel each other without; remove it, or give description = "total"'
     }
