@@ -200,7 +200,11 @@ def drift_to_end(first, last, time, dt, rules, view, columns):
                 limit_wall_density(rules.effects, i, rho),
                 limit_wall_density(rules.effects, i, ahead),
             )
+            shown = at(c.predicted_velocity, k)
             carry(rules, group, k, time, c)
+            # Its velocity is of the same time as that of the fluid: what falls with it is not braked by it.
+            if rules.ahead.velocity == 0.0:
+                put(c.predicted_velocity, k, shown)
         store_apparent_force(rules, group, k, time, dt, c)
         c.density[k] = rho
         c.specific_volume[k] = 1.0 / rho

@@ -63,9 +63,15 @@ def test_what_follows_the_impact(tmp_path, name):
 
 
 def test_mirrors_meet_the_measured_peaks(tmp_path):
-    """And are too high in what follows: 0.96 of ρgH for 0.68 on the mean."""
-    time, pressure = told(tmp_path / "run", "walls.tank.condition=mirror", "fluids.water.jitter=0.01")
+    """By the median of five starts, of which one may be far off (3.3 ρgH at P2).  And are too high in what follows:
+    0.96 of ρgH for 0.68 on the mean."""
+    peaks, means = {name: [] for name in BANDS}, []
+    for seed in range(5):
+        sets = ("walls.tank.condition=mirror", "fluids.water.jitter=0.01", f"fluids.water.seed={seed}")
+        time, pressure = told(tmp_path / f"run-{seed}", *sets)
+        for name, found in peaks.items():
+            found.append(peak(time, pressure[name]))
+        means.append(pressure["P2"][(time > 2.8) & (time < 7.0)].mean())
     for name, (least, most) in BANDS.items():
-        assert least < peak(time, pressure[name]) < most, name
-    late = (time > 2.8) & (time < 7.0)
-    assert 0.68 < pressure["P2"][late].mean() < 1.1
+        assert least < np.median(peaks[name]) < most, (name, peaks[name])
+    assert 0.68 < np.median(means) < 1.1
