@@ -184,9 +184,10 @@ def kick_to_middle(first, last, time, dt, rules, view, columns):
 @elementwise
 def drift_to_end(first, last, time, dt, rules, view, columns):
     """Drift to ``time``, the end of the step, with the density there, and predict what friction reads."""
-    c = columns
+    c, kept = columns, 1.0 if rules.ahead.velocity == 0.0 else 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
+        before = at(c.predicted_velocity, k)
         rate = dt * c.density_rate[k]
         rho = c.density[k] + rate
         ahead = rho + rules.ahead.pressure * rate
@@ -200,11 +201,11 @@ def drift_to_end(first, last, time, dt, rules, view, columns):
                 limit_wall_density(rules.effects, i, rho),
                 limit_wall_density(rules.effects, i, ahead),
             )
-            shown = at(c.predicted_velocity, k)
             carry(rules, group, k, time, c)
-            # Its velocity is of the same time as that of the fluid: what falls with it is not braked by it.
-            if rules.ahead.velocity == 0.0:
-                put(c.predicted_velocity, k, shown)
+        # What moves as it is told shows friction its velocity of the same time as a fluid does: what falls
+        # with that is not braked by it.  Behind the branch, as above.
+        now = at(c.predicted_velocity, k)
+        put(c.predicted_velocity, k, add(scale(before, kept), scale(now, 1.0 - kept)))
         store_apparent_force(rules, group, k, time, dt, c)
         c.density[k] = rho
         c.specific_volume[k] = 1.0 / rho
