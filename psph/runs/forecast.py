@@ -13,7 +13,7 @@ from psph.output.progress import duration
 from psph.scene.sites import sites_within
 from psph.simulation.plan import Plan
 
-STEP, PARTICLE, FLOP = 3e-5, 4e-8, 1.4e-10
+STEP, PARTICLE, FLOP = 3e-5, 4e-8, 1.1e-10
 """Seconds of a step whatever the particles, of a particle in it apart from its pairs, and of an
 operation of a pair, lists and halo included: by the measured rates of docs/performance.md."""
 
