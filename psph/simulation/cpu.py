@@ -361,14 +361,14 @@ class Engine:
         last = one.gives_rates and not one.holds
         held = [s[name] if last and own and name in s else None for name, own in zip(HELD, one.gives)] or NONE
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)), *held)
-        rest = Unloaded(plan.materials.driven, s.group) if one.for_free else None
+        rest = Unloaded(plan.materials.driven, s.group) if one.free_only else None
         parted = (kind.loops(one, self._sums[one.place], seen, sums) for kind in self.kinds)
         if own := next(filter(None, parted), None):
             yield from own
             return
         if one.gives_rates and not one.midway and plan.materials.loaded is not None:
             rest = rest or Unloaded(plan.materials.loaded, s.group)
-            reductions, written = ((), ()) if one.for_free else (one.reductions, sums.written)
+            reductions, written = ((), ()) if one.free_only else (one.reductions, sums.written)
             couple = HELD_COUPLE.name if one.holds else COUPLE.name
             if couple in s and plan.loads is Loads:
                 reductions, written = (*reductions, Couple(one.effects)), (*written, s[couple])

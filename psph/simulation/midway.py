@@ -13,8 +13,8 @@ density does not feel, for no sum more; stable for (1 + 2ε)(ωΔt)² < 4.  Fric
 second order in time, by extrapolation, and stable for γΔt < 1; with η = 0, beside a free surface, where sound
 is fastest, of first order and stable for γΔt < 2.  What moves all as one, or turns, keeps its density: x½ is
 the middle of the chord from x to the new x, and v½ its length over Δt.  What moves as a whole goes along
-chords too; walls that deform stand where their motion has them.  A shift beside the
-velocity is halved as the drift is.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
+chords too; walls that deform stand where their motion has them.  A shift beside the velocity is halved as the
+drift is.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
 """
 
 import math

@@ -34,7 +34,7 @@ class Pass(NamedTuple):
     some particles ``settles`` their density too.  One that gives rates ``gives`` them to these two arrays, of
     the acceleration and of the rate of density, or None in the place of one.  One that is ``midway`` sums the
     rate of density alone, at half of the step and before all others (psph.simulation.midway).  One is
-    ``for_free`` whose sums serve what moves freely alone: walls have none.
+    ``free_only`` whose sums serve what moves freely alone: walls have none.
     """
 
     place: int
@@ -49,7 +49,7 @@ class Pass(NamedTuple):
     holds: bool = False
     gives: tuple[str | None, ...] = ()
     midway: bool = False
-    for_free: bool = False
+    free_only: bool = False
 
     @property
     def settles(self) -> bool:
@@ -157,7 +157,7 @@ def make_passes(
     read = frozenset(also).union(*(call.reads.in_density_rate for call in free))
     rate = _pass(0, dense, (), read, written, stored, seen_as, 1)
     whole = (rate._replace(gives=(None, DENSITY_RATE.name), midway=True), *passes)
-    forces = last._replace(gives=(ACCELERATION.name, None), for_free=_serves_free(last, (*whole, last)))
+    forces = last._replace(gives=(ACCELERATION.name, None), free_only=_serves_free(last, (*whole, last)))
     return (*whole, forces)
 
 

@@ -121,11 +121,11 @@ def test_a_tongue_lies_on_a_dry_bed(tmp_path):
     mean, highest = [], []
     for sets in ((), ("physics.wall_approach=off",)):
         falls, seen = start(draft(tmp_path, DAM, *sets)), []
-        for time in (0.32, 0.325, 0.33, 0.335, 0.34):
+        for time in (0.325, 0.33, 0.335, 0.34, 0.345):
             while falls.time < time:
                 falls.step()
             seen.append(lowest_rows(falls, 0.04))
         mean.append(np.mean([one.mean() for one in seen]))
         highest.append(np.mean([one.max() for one in seen]))
     assert mean[0] < 0.75 and highest[0] < 1.5, (mean, highest)
-    assert mean[1] > 0.9 and highest[1] > 1.9, (mean, highest)
+    assert mean[1] > 1.0 and highest[1] > 1.9, (mean, highest)

@@ -72,12 +72,12 @@ def test_forces_of_two_passes_are_summed_on_what_moves_alone():
     def last(*called, midway=True):
         return make_passes(called, STORED, lambda name: name, midway=midway)[-1]
 
-    assert last(effect(A, **displaces)).for_free
-    assert not last(effect(A, **displaces), midway=False).for_free
-    assert not last(effect(A, lagged=True)).for_free
+    assert last(effect(A, **displaces)).free_only
+    assert not last(effect(A, **displaces), midway=False).free_only
+    assert not last(effect(A, lagged=True)).free_only
     reads = effect(A, in_rates="a", neighbour="a", **displaces)
     for where in ("beside", "in_density_rate"):
-        assert not last(reads._replace(reads=reads.reads._replace(**{where: frozenset("a")}))).for_free
+        assert not last(reads._replace(reads=reads.reads._replace(**{where: frozenset("a")}))).free_only
 
 
 def test_what_is_read_of_the_particle_alone_does_not_travel():
