@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.transforms import Bbox
 
 from psph.lab.peers.benchmarks import BENCHMARKS, Benchmark, numbers
 from psph.lab.peers.page import Cells, part, rows_of
@@ -23,6 +25,19 @@ ACROSS, LEGEND = 2, 1.3
 SIZE = re.compile(r", (\d+²|dx [\d.]+)$")
 """The end of a label that says how fine a run is: those that differ by it alone are joined."""
 
+
+CORNERS = (
+    ("left", "bottom", 4, 2),
+    ("right", "top", -4, -2),
+    ("left", "top", 4, -2),
+    ("right", "bottom", -4, 2),
+    ("center", "top", 0, -6),
+    ("center", "bottom", 0, 6),
+)
+"""Where a label may stand beside its point: its near side, and how far away, points."""
+
+ROOM, POINT = 2.5, 72.0
+"""Half the room that a point takes, points; points of an inch."""
 
 DECADE = 10.0
 """The largest error of a panel over the smallest, at least: near errors shall look near."""
@@ -85,13 +100,11 @@ def kind(name: str) -> tuple[str, str]:
 def _panel(axes: Axes, title: str, curves: Mapping[str, list[Dot]], colours: Mapping[str, str]) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
+    said: dict[Dot, str] = {}
     for name, points in curves.items():
         of, more = kind(name)
         axes.plot(*zip(*((p.seconds, p.error) for p in points)), "o-", color=colours[of], ms=4)
-        for point in points:
-            said = ", ".join(word for word in (more, point.size) if word)
-            place = {"xytext": (4, 4), "textcoords": "offset points", "size": 7, "color": style.PALE}
-            axes.annotate(said, (point.seconds, point.error), **place)
+        said |= {point: ", ".join(word for word in (more, point.size) if word) for point in points}
     axes.margins(0.25, 0.15)
     low, high = axes.get_ylim()
     wider = max(math.sqrt(DECADE * low / high), 1.0)
@@ -103,3 +116,36 @@ def _panel(axes: Axes, title: str, curves: Mapping[str, list[Dot]], colours: Map
     axes.grid(color=style.WALLS, lw=0.4)
     axes.set_xlabel("CPU seconds of the run, one thread")
     axes.set_title(title, loc="left", size=9, weight="bold")
+    _name(axes, {point: words for point, words in said.items() if words})
+
+
+def _name(axes: Axes, said: Mapping[Dot, str]) -> None:
+    """Write beside each point what it is, at the first corner where nothing stands yet."""
+    pixels = axes.figure.dpi / POINT
+    taken = [
+        Bbox.from_bounds(x - ROOM * pixels, y - ROOM * pixels, 2.0 * ROOM * pixels, 2.0 * ROOM * pixels)
+        for line in axes.lines
+        for x, y in axes.transData.transform(line.get_xydata())
+    ]
+    for point, words in said.items():
+        tried = [_beside(axes, point, words, corner) for corner in CORNERS]
+        boxes = [text.get_window_extent() for text in tried]
+        free = (k for k, box in enumerate(boxes) if not box.count_overlaps(taken))
+        best = next(free, 0)
+        taken.append(boxes[best])
+        for text in tried[:best] + tried[best + 1 :]:
+            text.remove()
+
+
+def _beside(axes: Axes, point: Dot, words: str, corner: tuple[str, str, int, int]) -> Annotation:
+    across, down, x, y = corner
+    return axes.annotate(
+        words,
+        (point.seconds, point.error),
+        xytext=(x, y),
+        textcoords="offset points",
+        ha=across,
+        va=down,
+        size=7,
+        color=style.PALE,
+    )
