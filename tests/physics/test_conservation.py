@@ -44,7 +44,7 @@ from psph.physics.fluid.weight import Steady
 from psph.physics.gas.pressure import GasPressure, OfUnlikeMasses
 from psph.physics.gas.shocks import KernelViscosity
 from psph.physics.gas.softening import ChangingSoftening
-from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
+from psph.physics.order.potential import InDisorder, LocalPotential, StrongerInTension, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
 from psph.physics.surface.contact import AtAngle, AtRememberedAngle, ContactAngle, ContactLine, HeldByWalls
@@ -105,7 +105,9 @@ def in_a_scene(effect, dim):
         "GasPressure": lambda: GasPressure(OfUnlikeMasses(kernel("wendland-c2", 1.0, dim))),
         "ShockViscosity": lambda: KernelViscosity(1.0, 2.0, kernel("wendland-c2", 1.0, dim)),
         "ChangingSoftening": lambda: ChangingSoftening(kernel("wendland-c2", 1.0, dim)),
-        "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
+        "LocalPotential": lambda: StrongerInTension(
+            InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5), 2.0, 0.01
+        ),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()
 

@@ -336,6 +336,25 @@ def test_the_potential_acts_in_disorder_alone(dim):
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
+def test_the_potential_is_stronger_where_a_pair_is_not_compressed(dim):
+    """By p/ρ of both ends, whose densities differ: whole under tension, once from a mean of 0.004 (c/10)² on."""
+    scene = SimpleNamespace(sound_speed=C, spacing=0.01, dimensions=dim)
+    p, whole = view(dim=dim), LocalPotential(0.5, 0.2).in_scene(scene)
+    stronger = LocalPotential(0.5, 0.2, 3.0).in_scene(scene)
+    once, both = whole.radial(*pair_of(p, 0, 1)), 0.008 * (C / 10.0) ** 2
+
+    def force(own, other):
+        pressed = p._replace(pressure=np.array([own, other]) / p.specific_volume)
+        return stronger.radial(*pair_of(pressed, 0, 1)) / once
+
+    assert once != 0.0 and p.specific_volume[0] != p.specific_volume[1]
+    assert [force(-own, 0.0) for own in (0.0, 5.0)] == pytest.approx([3.0, 3.0], rel=1e-12)
+    assert force(0.75 * both, -0.25 * both) == pytest.approx(2.0, rel=1e-12)
+    assert force(-0.25 * both, 0.5 * both) == pytest.approx(2.5, rel=1e-12)
+    assert [force(both, 0.0), force(0.5 * both, 9.0 * both)] == pytest.approx([1.0, 1.0], rel=1e-12)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
 def test_a_corrected_background_is_the_plain_one_and_what_the_correction_adds(dim):
     p = view(dim=dim)
     i, j, pair = pair_of(p, 0, 1)

@@ -28,10 +28,17 @@ the square and hexagonal, or the cubic, body-centred and face-centred lattice: n
 NEAR = 0.75
 """Distance in spacings at which the strength is told."""
 
-AT_NEAR = (1.0, 1.0, 1.5)
+AT_NEAR = (1.0, 1.0, 0.75)
 """What −ψ′ is there, over dx^-(d+1).
 
-With 1.0 in 3D a rotating cube clumps: 5 % of its particles come nearer than 0.57 dx to another."""
+With 1.5 in 3D a rotating cube loses 8 % of its energy of motion for 7; its particles then are 8 %
+further apart."""
+
+LOOSE = 0.004
+"""Mean of p/ρ in a pair over (c/10)² from which on it counts as compressed.
+
+Below it ``in_tension`` counts, the more the less there is, and all of it under tension, where a fluid
+tears.  Were compressed pairs as strong, still water would move."""
 
 Strength = Annotated[
     float,
@@ -61,13 +68,15 @@ class LocalPotential(NamedTuple):
     """The pair potential where particles are in disorder or at a surface, and nowhere else.
 
     a_i = −(2K/ρ₀) dx^d Σ_j ½(g_i + g_j) ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊,
-    scaled to −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
+    scaled to −ψ′ = dx^-(d+1) at r = ¾ dx, ¾ of that in 3D; the last weight, negative, makes the virial
     Σ r ψ′ of the starting lattice zero: no mean pressure.  g = min(|L − 1|²/t², 1): L, which corrects
     gradients, is 1 where neighbours are in order all around.  psph's own.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
-    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  Between two masses the force is
-    that between two of the smaller mass: the heavier one is moved less.  It costs a flow in good order
-    nothing, keeps momentum and angular momentum, and is no potential: energy is not conserved by it.
+    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  But a pair that is not compressed
+    has ``in_tension`` times as much of it, which falls to once while p_i/ρ_i + p_j/ρ_j rises from 0 to
+    0.008 (c/10)².  Between two masses the force is that between two of the smaller mass: the heavier one
+    is moved less.  It costs a flow in good order nothing, keeps momentum and angular momentum, and is no
+    potential: energy is not conserved by it.
     """
 
     refuses = MADE_FOR_FLUIDS
@@ -83,11 +92,23 @@ class LocalPotential(NamedTuple):
             json_schema_extra={"unit": "1"},
         ),
     ] = DISORDER
+    in_tension: Annotated[
+        float,
+        Field(
+            ge=0,
+            description="how many times as strong it is between particles that are not compressed",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 1.0
 
     def in_scene(self, scene: Facts):
         """The potential of the scene's lattice."""
         made = neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions)
-        return InDisorder(*made, 0.5 / self.threshold**2)
+        one = InDisorder(*made, 0.5 / self.threshold**2)
+        if self.in_tension == 1.0:
+            return one
+        loose = 2.0 * LOOSE * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
+        return StrongerInTension(one, self.in_tension - 1.0, 1.0 / loose)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -112,8 +133,35 @@ class InDisorder(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        g = half_disorder(self.half, i) + half_disorder(self.half, j)
-        return min(1.0, j.mass * (1.0 / i.mass)) * g * _repulsion(self, pair)
+        return _in_disorder(self, i, j, pair)
+
+
+class StrongerInTension(NamedTuple):
+    """The pair potential in disorder, stronger where particles are not compressed.
+
+    The form of :class:`LocalPotential` with ``in_tension`` k: (1 + ``more`` min(max(1 − ``slope``
+    (p_i/ρ_i + p_j/ρ_j), 0), 1)) times ``ordinary``, more = k − 1; slope in s²/m².
+    """
+
+    conserves = ("momentum", "angular momentum")
+    held = True
+
+    ordinary: InDisorder
+    more: float
+    slope: float
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        compressed = (i.pressure * i.specific_volume + j.pressure * j.specific_volume) * self.slope
+        loose = min(max(1.0 - compressed, 0.0), 1.0)
+        return (1.0 + self.more * loose) * _in_disorder(self.ordinary, i, j, pair)
+
+
+@helper
+def _in_disorder(potential, i, j, pair):
+    """−ψ′/r of a pair in its disorder, 1/s²."""
+    g = half_disorder(potential.half, i) + half_disorder(potential.half, j)
+    return min(1.0, j.mass * (1.0 / i.mass)) * g * _repulsion(potential, pair)
 
 
 @helper
