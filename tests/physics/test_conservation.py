@@ -44,7 +44,13 @@ from psph.physics.fluid.weight import Steady
 from psph.physics.gas.pressure import GasPressure, OfUnlikeMasses
 from psph.physics.gas.shocks import KernelViscosity
 from psph.physics.gas.softening import ChangingSoftening
-from psph.physics.order.potential import InDisorder, LocalPotential, StrongerInTension, neutral_potential
+from psph.physics.order.potential import (
+    InDisorder,
+    LocalPotential,
+    OwnRoughness,
+    StrongerInTension,
+    neutral_potential,
+)
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
 from psph.physics.surface.contact import AtAngle, AtRememberedAngle, ContactAngle, ContactLine, HeldByWalls
@@ -106,7 +112,7 @@ def in_a_scene(effect, dim):
         "ShockViscosity": lambda: KernelViscosity(1.0, 2.0, kernel("wendland-c2", 1.0, dim)),
         "ChangingSoftening": lambda: ChangingSoftening(kernel("wendland-c2", 1.0, dim)),
         "LocalPotential": lambda: StrongerInTension(
-            InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5), 2.0, 0.01
+            InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), OwnRoughness(12.5)), 3.0, 0.02
         ),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()

@@ -132,6 +132,10 @@ BESIDE = {
 """What some effects need beside them."""
 
 
+LARGER = {"in_tension": 3.0}
+"""Values of keys that may not be as small as 0.1."""
+
+
 def calling_for(entry) -> list[str]:
     """Overrides that call for the effect of an entry."""
     key, _, choice = entry.key.partition("|")[0].partition("=")
@@ -158,7 +162,7 @@ def calling_for(entry) -> list[str]:
     if key.endswith("damping_zone"):
         return [f"{key}={{begin=0.1, end=0.4}}"]
     hints = {n: hint for n, hint in get_type_hints(entry.effect).items() if get_origin(hint) is not Literal}
-    values = {n: [0.1, 0.1] if get_origin(hint) is tuple else 0.1 for n, hint in hints.items()}
+    values = {n: [0.1, 0.1] if get_origin(hint) is tuple else LARGER.get(n, 0.1) for n, hint in hints.items()}
     table = f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
     return [table, *BESIDE.get(key, ())]
 

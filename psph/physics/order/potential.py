@@ -8,9 +8,10 @@ import numpy as np
 from pydantic import Field
 
 from psph.acts import MADE_FOR_FLUIDS
+from psph.engine.jit import call_by_type
 from psph.formula import helper
 from psph.physics.facts import SOUND_OVER_SPEED, Facts
-from psph.physics.fluid.correction import DISORDER, half_disorder, needs_correction
+from psph.physics.fluid.correction import DISORDER, ROUGH, half_disorder, needs_correction
 from psph.vectors import excess, multiply, plus_less_last, scale
 
 CORES = (1.6, 1.6, 1.3228)
@@ -95,7 +96,7 @@ class LocalPotential(NamedTuple):
     in_tension: Annotated[
         float,
         Field(
-            ge=0,
+            ge=1,
             description="how many times as strong it is between particles that are not compressed",
             json_schema_extra={"unit": "1"},
         ),
@@ -104,11 +105,12 @@ class LocalPotential(NamedTuple):
     def in_scene(self, scene: Facts):
         """The potential of the scene's lattice."""
         made = neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions)
-        one = InDisorder(*made, 0.5 / self.threshold**2)
+        usual = self.threshold == DISORDER
+        one = InDisorder(*made, UsualRoughness() if usual else OwnRoughness(0.5 / self.threshold**2))
         if self.in_tension == 1.0:
             return one
         loose = 2.0 * LOOSE * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
-        return StrongerInTension(one, self.in_tension - 1.0, 1.0 / loose)
+        return StrongerInTension(one, self.in_tension, (self.in_tension - 1.0) / loose)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -116,10 +118,31 @@ class LocalPotential(NamedTuple):
         yield from needs_correction(physics)
 
 
+class UsualRoughness(NamedTuple):
+    """Disorder by the size of L − 1 that all other parts take: a pair works it out once for all."""
+
+    def roughness(self, i, j):
+        """½ min(|L − 1|²/t², 1) of both ends together."""
+        return half_disorder(ROUGH, i) + half_disorder(ROUGH, j)
+
+
+class OwnRoughness(NamedTuple):
+    """Disorder by a size t of its own; ``half`` is 1/(2t²)."""
+
+    half: float
+
+    def roughness(self, i, j):
+        """½ min(|L − 1|²/t², 1) of both ends together."""
+        return half_disorder(self.half, i) + half_disorder(self.half, j)
+
+
+_roughness = call_by_type("roughness")
+
+
 class InDisorder(NamedTuple):
     """The pair potential where particles are in disorder or at a surface, and nowhere else.
 
-    The form of :class:`LocalPotential` for the lattice of a scene; ``half`` is 1/(2t²).
+    The form of :class:`LocalPotential` for the lattice of a scene; ``rough`` says what disorder is.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -129,7 +152,7 @@ class InDisorder(NamedTuple):
     steepness: float
     heights: tuple[float, ...]
     slopes: tuple[float, ...]
-    half: float
+    rough: UsualRoughness | OwnRoughness
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
@@ -139,28 +162,29 @@ class InDisorder(NamedTuple):
 class StrongerInTension(NamedTuple):
     """The pair potential in disorder, stronger where particles are not compressed.
 
-    The form of :class:`LocalPotential` with ``in_tension`` k: (1 + ``more`` min(max(1 − ``slope``
-    (p_i/ρ_i + p_j/ρ_j), 0), 1)) times ``ordinary``, more = k − 1; slope in s²/m².
+    The form of :class:`LocalPotential` with ``in_tension`` k, not below 1: ``most`` − ``slope`` (p_i/ρ_i +
+    p_j/ρ_j), between 1 and most, times ``ordinary``; most = k, slope in s²/m².
     """
 
     conserves = ("momentum", "angular momentum")
     held = True
 
     ordinary: InDisorder
-    more: float
+    most: float
     slope: float
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        compressed = (i.pressure * i.specific_volume + j.pressure * j.specific_volume) * self.slope
-        loose = min(max(1.0 - compressed, 0.0), 1.0)
-        return (1.0 + self.more * loose) * _in_disorder(self.ordinary, i, j, pair)
+        own = self.most - self.slope * (i.pressure * i.specific_volume)
+        other = self.slope * j.pressure * j.specific_volume
+        times = min(max(own - other, 1.0), self.most)
+        return _in_disorder(self.ordinary, i, j, pair) * times
 
 
 @helper
 def _in_disorder(potential, i, j, pair):
     """−ψ′/r of a pair in its disorder, 1/s²."""
-    g = half_disorder(potential.half, i) + half_disorder(potential.half, j)
+    g = _roughness(potential.rough, i, j)
     return min(1.0, j.mass * (1.0 / i.mass)) * g * _repulsion(potential, pair)
 
 
