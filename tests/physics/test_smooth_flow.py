@@ -338,9 +338,11 @@ def test_the_potential_acts_in_disorder_alone(dim):
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_the_potential_is_stronger_where_a_pair_is_not_compressed(dim):
     """By p/ρ of both ends, whose densities differ: whole under tension, once from a mean of 0.004 (c/10)² on."""
-    scene = SimpleNamespace(sound_speed=C, spacing=0.01, dimensions=dim)
+    scene = SimpleNamespace(sound_speed=C, spacing=0.01, dimensions=dim, has_free_surface=True)
+    filled = SimpleNamespace(sound_speed=C, spacing=0.01, dimensions=dim, has_free_surface=False)
     p, whole = view(dim=dim), LocalPotential(0.5, 0.2).in_scene(scene)
     stronger = LocalPotential(0.5, 0.2, 3.0).in_scene(scene)
+    assert LocalPotential(0.5, 0.2, 3.0).in_scene(filled) == whole
     once, both = whole.radial(*pair_of(p, 0, 1)), 0.008 * (C / 10.0) ** 2
 
     def force(own, other):

@@ -73,11 +73,11 @@ class LocalPotential(NamedTuple):
     Σ r ψ′ of the starting lattice zero: no mean pressure.  g = min(|L − 1|²/t², 1): L, which corrects
     gradients, is 1 where neighbours are in order all around.  psph's own.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
-    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  But a pair that is not compressed
-    has ``in_tension`` times as much of it, which falls to once while p_i/ρ_i + p_j/ρ_j rises from 0 to
-    0.008 (c/10)².  Between two masses the force is that between two of the smaller mass: the heavier one
-    is moved less.  It costs a flow in good order nothing, keeps momentum and angular momentum, and is no
-    potential: energy is not conserved by it.
+    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  But with a free
+    surface a pair that is not compressed has ``in_tension`` times as much of it, which falls to once while
+    p_i/ρ_i + p_j/ρ_j rises from 0 to 0.008 (c/10)².  Between two masses the force is that between two of
+    the smaller mass: the heavier one is moved less.  It costs a flow in good order nothing, keeps momentum
+    and angular momentum, and is no potential: energy is not conserved by it.
     """
 
     refuses = MADE_FOR_FLUIDS
@@ -97,7 +97,7 @@ class LocalPotential(NamedTuple):
         float,
         Field(
             ge=1,
-            description="how many times as strong it is between particles that are not compressed",
+            description="how many times as strong it is between particles not compressed, by a free surface",
             json_schema_extra={"unit": "1"},
         ),
     ] = 1.0
@@ -107,7 +107,7 @@ class LocalPotential(NamedTuple):
         made = neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions)
         usual = self.threshold == DISORDER
         one = InDisorder(*made, UsualRoughness() if usual else OwnRoughness(0.5 / self.threshold**2))
-        if self.in_tension == 1.0:
+        if self.in_tension == 1.0 or not scene.has_free_surface:
             return one
         loose = 2.0 * LOOSE * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
         return StrongerInTension(one, self.in_tension, (self.in_tension - 1.0) / loose)
