@@ -29,11 +29,14 @@ the square and hexagonal, or the cubic, body-centred and face-centred lattice: n
 NEAR = 0.75
 """Distance in spacings at which the strength is told."""
 
-AT_NEAR = (1.0, 1.0, 0.75)
+AT_NEAR = (1.0, 1.0, 1.5)
 """What −ψ′ is there, over dx^-(d+1).
 
-With 1.5 in 3D a rotating cube loses 8 % of its energy of motion for 7; its particles then are 8 %
-further apart."""
+With 1.0 in 3D a rotating cube clumps: 5 % of its particles come nearer than 0.57 dx to another."""
+
+SPATIAL = 3
+"""Dimensions in which ``in_tension`` does nothing: a rotating cube would lose 8 % of its energy of motion by
+it for 7."""
 
 LOOSE = 0.004
 """Mean of p/ρ in a pair over (c/10)² from which on it counts as compressed.
@@ -69,15 +72,15 @@ class LocalPotential(NamedTuple):
     """The pair potential where particles are in disorder or at a surface, and nowhere else.
 
     a_i = −(2K/ρ₀) dx^d Σ_j ½(g_i + g_j) ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊,
-    scaled to −ψ′ = dx^-(d+1) at r = ¾ dx, ¾ of that in 3D; the last weight, negative, makes the virial
+    scaled to −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
     Σ r ψ′ of the starting lattice zero: no mean pressure.  g = min(|L − 1|²/t², 1): L, which corrects
     gradients, is 1 where neighbours are in order all around.  psph's own.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
-    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  But with a free
-    surface a pair that is not compressed has ``in_tension`` times as much of it, which falls to once while
-    p_i/ρ_i + p_j/ρ_j rises from 0 to 0.008 (c/10)².  Between two masses the force is that between two of
-    the smaller mass: the heavier one is moved less.  It costs a flow in good order nothing, keeps momentum
-    and angular momentum, and is no potential: energy is not conserved by it.
+    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  But in 2D, with a free surface, a
+    pair that is not compressed has ``in_tension`` times as much of it, which falls to once while p_i/ρ_i +
+    p_j/ρ_j rises from 0 to 0.008 (c/10)².  Between two masses the force is that between two of the smaller
+    mass: the heavier one is moved less.  It costs a flow in good order nothing, keeps momentum and angular
+    momentum, and is no potential: energy is not conserved by it.
     """
 
     refuses = MADE_FOR_FLUIDS
@@ -97,7 +100,7 @@ class LocalPotential(NamedTuple):
         float,
         Field(
             ge=1,
-            description="how many times as strong it is between particles not compressed, by a free surface",
+            description="how many times as strong where a pair is not compressed, in 2D with a surface",
             json_schema_extra={"unit": "1"},
         ),
     ] = 1.0
@@ -107,7 +110,7 @@ class LocalPotential(NamedTuple):
         made = neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions)
         usual = self.threshold == DISORDER
         one = InDisorder(*made, UsualRoughness() if usual else OwnRoughness(0.5 / self.threshold**2))
-        if self.in_tension == 1.0 or not scene.has_free_surface:
+        if self.in_tension == 1.0 or scene.dimensions == SPATIAL or not scene.has_free_surface:
             return one
         loose = 2.0 * LOOSE * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
         return StrongerInTension(one, self.in_tension, (self.in_tension - 1.0) / loose)
