@@ -19,7 +19,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.fourth_order_diffusion": 0.1,
         "physics.reconstructed_damping": {"alpha": 0.03, "in_disorder": 0.2},
         "physics.impact_damping": 4.0,
-        "physics.local_potential": {"strength": 0.004, "threshold": 0.2, "in_tension": 3.0},
+        "physics.local_potential": {"strength": 0.004, "threshold": 0.2},
         "physics.position_shift": 0.1,
         "physics.summation_density": 0.002,
         "physics.wall_approach": 2.2,
