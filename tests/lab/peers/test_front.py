@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from psph.lab.errors import PeersError, RunBlewUp
-from psph.lab.peers import command, own
+from psph.lab.peers import command, front, own
 from psph.lab.peers.benchmarks import BENCHMARKS, numbers
 from psph.lab.peers.front import Dot, curves_of, draw, kind
 from psph.lab.peers.page import table
@@ -56,6 +56,28 @@ def test_the_picture_has_a_panel_for_each_table(tmp_path):
     page.write_text("nothing")
     with pytest.raises(PeersError, match="no place for"):
         draw(page, tmp_path / "front.png")
+
+
+def test_no_label_stands_on_another(tmp_path, monkeypatch):
+    """Two runs a point apart.  The control: with one place for a label, they do."""
+
+    def covered(corners):
+        drawn = []
+        monkeypatch.setattr(front, "CORNERS", corners)
+        monkeypatch.setattr(front.style, "save", lambda figure, path: drawn.append(figure) or path)
+        page = tmp_path / "peers.md"
+        near = {"psph, plain SPH, 50²": ("0.50", "1.6", "2.3", "5.6", "a, 1")}
+        made = {name: table(of.head, {}) for name, of in BENCHMARKS.items()}
+        made["taylor_green"] = table(BENCHMARKS["taylor_green"].head, VORTICES | near)
+        blocks = (f"<!-- {n}: begin -->\n{text}\n<!-- {n}: end -->\n" for n, text in made.items())
+        page.write_text("".join(blocks), encoding="utf-8")
+        draw(page, tmp_path / "front.png")
+        boxes = [text.get_window_extent() for axes in drawn[0].axes for text in axes.texts]
+        assert len(boxes) == 4
+        return sum(box.count_overlaps(boxes) - 1 for box in boxes)
+
+    assert covered(front.CORNERS) == 0
+    assert covered(front.CORNERS[:1]) > 0
 
 
 def test_a_run_that_blows_up_says_so_in_its_row(tmp_path, monkeypatch):
