@@ -44,6 +44,13 @@ class Unloaded(NamedTuple):
     group: Any
 
 
+class Among(NamedTuple):
+    """The pass over the groups that are ``loaded`` alone, with all that it sums elsewhere."""
+
+    loaded: Any
+    group: Any
+
+
 class Couple(NamedTuple):
     """A sum of a pass of loads: the moment of the load about the particle's own place.
 
@@ -73,6 +80,10 @@ ON_LOADED = (Loads, Pushes)
 """Passes over the groups whose load is asked for: of what comes from outside they sum nothing."""
 
 
+CHOSEN = (*ON_LOADED, Among)
+"""Passes over the groups that are ``loaded`` and no others."""
+
+
 def _is(kinds, loads) -> bool:
     """Whether the type of ``loads`` is that of one of these ``kinds`` of passes."""
     return getattr(loads, "instance_class", None) in kinds
@@ -80,12 +91,12 @@ def _is(kinds, loads) -> bool:
 
 def is_due(loads, k):
     """Whether a pass has sums for the particle in column ``k``."""
-    return loads is None or bool(loads.loaded[loads.group[k]]) == isinstance(loads, ON_LOADED)
+    return loads is None or bool(loads.loaded[loads.group[k]]) == isinstance(loads, CHOSEN)
 
 
 @overload(is_due)
 def _typed_is_due(loads, k):
-    if _is(ON_LOADED, loads):
+    if _is(CHOSEN, loads):
         return lambda loads, k: loads.loaded[loads.group[k]]
     if _is((Unloaded,), loads):
         return lambda loads, k: not loads.loaded[loads.group[k]]

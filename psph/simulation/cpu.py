@@ -8,30 +8,27 @@ from typing import Any
 
 import numpy as np
 
-from psph.composition.loads import Couple, Loads, Unloaded
 from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
-from psph.fields import HELD_ACCELERATION, seen_at, view_of
+from psph.fields import seen_at, view_of
 from psph.output.ledger import Ledger
 from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.physics.motion import COUPLE, HELD_COUPLE, LOAD
+from psph.physics.motion import COUPLE, HELD_COUPLE
 from psph.simulation.bounded import admit_kicked, admit_predicted
 from psph.simulation.evolving import Evolving
 from psph.simulation.integrator import kick, kick_drift_predict, settle_given_pressure, state_of
 from psph.simulation.midway import drift_to_end, kick_to_middle
 from psph.simulation.neighbourhood import Neighbourhood
-from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
-from psph.simulation.passes import HELD, Pass, written_seldom
+from psph.simulation.pair_loops import PairLoops
+from psph.simulation.pairs import Around, Metric
+from psph.simulation.passes import Pass, written_seldom
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
 from psph.simulation.rules import Columns, Rules
 from psph.work import Rank
-
-NONE = (None, None)
-"""The arrays of a pass without rates."""
 
 ON_DUE = np.array([False, True])
 """In the place of the groups that are loaded, where columns are numbered 1 if they are due, else 0."""
@@ -80,8 +77,7 @@ class Engine:
         self._to_middle, self._to_end = settled(kick_to_middle), settled(drift_to_end)
         self._evolving = Evolving(plan.evolving, store, self.each)
         self._unsent: set[str] = set()
-        self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
-        self._loads = [settled(sum_over_neighbours) for _ in plan.passes]
+        self._loops = PairLoops(plan, store, self.kinds)
         self._potential = settled(potentials)
         self._paid = 0.0
         self._bundles: dict[tuple, Columns] = {}
@@ -356,28 +352,7 @@ class Engine:
         """The compiled loops of a pass, each with what it takes beside the columns."""
         s, plan, records = self.store, self.plan, self.records[one.place]
         around = Around(records.view(), records.table, s.low, *self.neighbourhood.of(one))
-        seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
-        rates = [s[name] if name in s else None for name in one.gives] or NONE
-        last = one.gives_rates and not one.holds
-        held = [s[name] if last and own and name in s else None for name, own in zip(HELD, one.gives)] or NONE
-        sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)), *held)
-        rest = Unloaded(plan.materials.driven, s.group) if one.free_only else None
-        parted = (kind.loops(one, self._sums[one.place], seen, sums) for kind in self.kinds)
-        if own := next(filter(None, parted), None):
-            yield from own
-            return
-        if one.gives_rates and not one.midway and plan.materials.loaded is not None:
-            rest = rest or Unloaded(plan.materials.loaded, s.group)
-            reductions, written = ((), ()) if one.free_only else (one.reductions, sums.written)
-            couple = HELD_COUPLE.name if one.holds else COUPLE.name
-            if couple in s and plan.loads is Loads:
-                reductions, written = (*reductions, Couple(one.effects)), (*written, s[couple])
-            summed = Summed(one.effects, reductions, plan.loads(plan.materials.loaded, s.group))
-            pushed = s[HELD_ACCELERATION.name if one.holds else LOAD.name]
-            told = sums._replace(acceleration=pushed, written=written)
-            yield self._loads[one.place], (summed, *seen, told)
-        summed = Summed(one.effects, one.reductions, rest)
-        yield self._sums[one.place], (summed, *seen, sums)
+        return self._loops.of(one, (Metric(plan.kernel, plan.space, self.softening), s.view(), around))
 
     def columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""

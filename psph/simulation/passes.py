@@ -76,6 +76,16 @@ class Pass(NamedTuple):
         """Whether it sums acceleration and rate of density, or what of them serves for several steps."""
         return bool(self.effects)
 
+    @property
+    def on_free(self) -> tuple[Any, ...]:
+        """Its effects on what moves freely: all but those of which walls alone feel something."""
+        return tuple(effect for effect in self.effects if not getattr(effect, "on_walls", False))
+
+    @property
+    def differs_on_driven(self) -> bool:
+        """Whether it has other effects on what is driven than on what moves freely, in loops of their own."""
+        return self.midway and len(self.on_free) < len(self.effects)
+
     def due(self, steps: int) -> bool:
         """Whether it runs in the step after so many."""
         return steps % self.every == 0

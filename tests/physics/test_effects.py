@@ -398,12 +398,15 @@ def test_hydrostatic_diffusion_leaves_a_still_column_alone(dim):
 
 
 def test_walls_take_density_over_and_give_none():
-    """A wall without pressure gives none to another either, and draws none off."""
-    tank, (i, j, pair) = TankDiffusion(0.1, Steady((0.0, 0.0))), pair_of(view(), 0, 1)
-    for own, other, pressure in product((0.0, 1.0), (0.0, 1.0), (-70.0, 0.0, 70.0)):
-        neighbour = j._replace(is_fluid=other, pressure=pressure)
+    """A wall without pressure gives none to another either, and draws none off: one of its rest density, and
+    where walls bear no tension one of less."""
+    i, j, pair = pair_of(view(), 0, 1)
+    for own, other, denser, tension in product((0.0, 1.0), (0.0, 1.0), (-2e-5, 0.0, 2e-5), (0.0, 1.0)):
+        tank = TankDiffusion(0.1, Steady((0.0, 0.0)), tension=tension)
+        neighbour = j._replace(is_fluid=other, specific_volume=1.0 / (j.rest_density * (1.0 + denser)))
         rate = tank.density_rate(i._replace(is_fluid=own), neighbour, pair)
-        assert (rate == 0.0) == (not other and bool(own or not pressure))
+        bears = denser > 0.0 or (denser < 0.0 and tension == 1.0)
+        assert (rate == 0.0) == (not other and bool(own or not bears))
 
 
 def test_two_wall_particles_exchange_no_density_by_riemann_problems():

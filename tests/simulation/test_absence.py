@@ -17,7 +17,7 @@ from psph.physics.solid.contact import SolidContact
 from psph.runs.footprint import bytes_per_refresh
 from psph.runs.setup import create_particles
 from psph.scene import Scene
-from psph.simulation import cpu as engine_module
+from psph.simulation import pair_loops as loops_module
 from psph.simulation import pairs
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
@@ -68,7 +68,7 @@ def footprint(tmp_path, monkeypatch):
     def make(catalogue, *overrides):
         calls = []
         monkeypatch.setattr(Simulation, "_start", lambda self: None)  # no step: types suffice
-        monkeypatch.setattr(engine_module, "sum_over_neighbours", lambda *call: calls.append(call))
+        monkeypatch.setattr(loops_module, "sum_over_neighbours", lambda *call: calls.append(call))
         scene = Scene(draft(tmp_path, SQUARE, *overrides))
         plan = make_plan(scene, BUILT_IN._replace(effects=tuple(catalogue)))
         store = create_particles(scene, plan, MPI.COMM_SELF)

@@ -13,6 +13,7 @@ from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square
 from psph.physics.fluid.weight import Gravitation, down, gravitation_of
+from psph.physics.surface.free import under_tension
 from psph.theory.stability import parts
 from psph.vectors import add, dot, scale, times, zero_like
 
@@ -20,6 +21,11 @@ STABLE = 0.15
 """S h δ c Δt must stay below; S is the fastest smoothing of the kernel on the lattice (psph.smoothing), 1/m²,
 and S h² is 1.9 to 5.7.  The fastest wave decays at the rate 2 S h δ c.  Density, predicted with the weights
 7/4, −1, 1/4, is stable up to a third of its value a step; a tenth of that is left for disorder."""
+
+
+AT_REST = 1e-6
+"""Least |1 − ρ₀/ρ| of a wall that bears a pressure; of a dry one it is rounding, in single precision 1e-7.
+By the density, for the pass at the middle of a step fetches no pressure."""
 
 
 class DensityDiffusion(NamedTuple):
@@ -41,7 +47,9 @@ class DensityDiffusion(NamedTuple):
         held = any(scene.gravity) or not all(one.is_fluid for one in scene.species)
         held = held or scene.frame is not None
         pull, matter = gravitation_of(scene), matter_of(scene)
-        return self if isinstance(matter, OneMatter) and not held else TankDiffusion(self.delta, pull, matter)
+        if isinstance(matter, OneMatter) and not held:
+            return self
+        return TankDiffusion(self.delta, pull, matter, under_tension(scene))
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
@@ -63,17 +71,19 @@ class TankDiffusion(NamedTuple):
     mean of the pair's two rest densities: the slope of density in a fluid at rest, linear in the
     depth, stays, and what one particle gains in volume the other loses.  Antuono, Colagrossi,
     Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532, with the exact slope for theirs.
-    ``gravity`` is what is felt as such; ``matter`` by :func:`matter_of`.
+    ``gravity`` is what is felt as such; ``matter`` by :func:`matter_of`; ``tension`` 1 if walls bear one,
+    else 0.
     """
 
     delta: float
     gravity: Gravitation
     matter: Matter = OneMatter()
+    tension: float = 1.0
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         taken = _excess(self.delta, i, j, _weight(self, i, j, pair)) * alike(self.matter, i, j)
-        return where(_giving(i, j) > 0.0, taken, 0.0) * _nearness(i, pair)
+        return where(_giving(self.tension, i, j) > 0.0, taken, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
@@ -102,7 +112,7 @@ class FourthOrderDiffusion(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """The form that knows gravity."""
-        return BesideSmoothDensity(self.delta, gravitation_of(scene), matter_of(scene))
+        return BesideSmoothDensity(self.delta, gravitation_of(scene), matter_of(scene), under_tension(scene))
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -116,12 +126,13 @@ class BesideSmoothDensity(NamedTuple):
     """Density diffuses between neighbours, except for the part of a smooth field: this damps noise alone.
 
     The form of :class:`FourthOrderDiffusion` in a scene; ``gravity`` is what is felt as such;
-    ``matter`` by :func:`matter_of`.
+    ``matter`` by :func:`matter_of`; ``tension`` 1 if walls bear one, else 0.
     """
 
     delta: float
     gravity: Gravitation
     matter: Matter = OneMatter()
+    tension: float = 1.0
 
     writes = Declared(
         "density_gradient", "kg/m4", "gradient of the density over its rest density", VECTOR, image=StillSlope
@@ -155,7 +166,7 @@ class BesideSmoothDensity(NamedTuple):
         mixing = 2.0 * self.delta * i.smoothing_length * i.sound_speed * alike(self.matter, i, j)
         flux = mixing * (rise - ordered * smooth)
         nearness = min(pair.r2 * (100.0 / (i.smoothing_length * i.smoothing_length)), 1.0)
-        return where(_giving(i, j) > 0.0, flux, 0.0) * (nearness * pair.m_dw_r)
+        return where(_giving(self.tension, i, j) > 0.0, flux, 0.0) * (nearness * pair.m_dw_r)
 
     def longest_step(self, scene):
         """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
@@ -175,10 +186,11 @@ def _weight(effect, i, j, pair):
 
 
 @helper
-def _giving(i, j):
+def _giving(tension, i, j):
     """Above 0 where j gives density to i: a fluid takes nothing from a wall, and a wall nothing from one
     without pressure."""
-    return j.is_fluid + (1.0 - i.is_fluid) * (j.pressure * j.pressure)
+    denser = 1.0 - j.specific_volume * j.rest_density
+    return j.is_fluid + (1.0 - i.is_fluid) * (max(denser, -tension * denser) - AT_REST)
 
 
 @helper

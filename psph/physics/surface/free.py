@@ -114,6 +114,11 @@ class TensionFloor(NamedTuple):
         return None
 
 
+def under_tension(scene: Facts) -> float:
+    """1 if the walls of a scene bear a tension, else 0."""
+    return float(scene.physics.tension_floor is None or not scene.has_free_surface)
+
+
 GAS = 0.1
 """Rest density over the largest of the scene below which a fluid expands as a gas does."""
 

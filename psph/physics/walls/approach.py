@@ -70,6 +70,8 @@ class NearApproach(NamedTuple):
     reach: float
     steepness: float
 
+    on_walls = True
+
     def density_rate(self, i, j, pair):
         """What a wall leaves out of one neighbour's share of dρ_i/dt, kg/(m^d s)."""
         x = min(max((self.reach - pair.r / i.smoothing_length) * self.steepness, 0.0), 1.0)
