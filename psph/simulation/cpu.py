@@ -291,6 +291,7 @@ class Engine:
     def _sum_while_refreshing(self, one: Pass, fields: tuple[str, ...]) -> None:
         """Interior particles are summed while the halo travels, then the rim."""
         first, last = self.domain.interior()
+        loops = [*self._loops_of(one)]
         halo, records = self.domain.halo, self.records[one.place]
         begin, end = self.store.low, self.store.low + self.store.owned
         with self.ledger("halo"):
@@ -298,21 +299,24 @@ class Engine:
         with self.ledger("records"):
             records.fill(begin, end)
         with self.ledger("pairs"):
-            self.sum_columns(one, first, last)
+            self._run(one, loops, first, last)
         with self.ledger("halo"):
             halo.finish(fields)
         with self.ledger("records"):
             records.fill(0, begin)
             records.fill(end, self.store.total)
         with self.ledger("pairs"):
-            self.sum_columns(one, begin, first)
-            self.sum_columns(one, last, end)
+            self._run(one, loops, begin, first)
+            self._run(one, loops, last, end)
 
     def sum_columns(self, one: Pass, first: int, last: int) -> None:
         """One pass over the neighbours of the particles in some columns."""
+        self._run(one, [*self._loops_of(one)], first, last)
+
+    def _run(self, one: Pass, loops: list, first: int, last: int) -> None:
+        """The ``loops`` of a pass over some columns."""
         if first == last:
             return
-        loops = [*self._loops_of(one)]
         for loop, args in loops:
             in_threads(loop, first, last, *args)
         loaded = self.plan.materials.loaded is not None and not self.plan.finer

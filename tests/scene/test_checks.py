@@ -416,6 +416,14 @@ def test_a_background_pressure_at_a_free_surface_is_warned_of(tmp_path):
     assert checked(tmp_path, TANK, "physics.background_pressure=auto") == []
 
 
+@pytest.mark.parametrize("text, why", [(TANK, ""), (CLOSED, "the fluid has no free surface")])
+def test_a_potential_in_tension_that_cannot_act_is_warned_of(tmp_path, text, why):
+    told = checked(tmp_path, text, "scheme=stable", "physics.local_potential.in_tension=3")
+    beyond = [line for line in told if "in_tension" in line]
+    says = f"case.toml: physics.local_potential: in_tension = 3 has no effect here, since {why}; leave it out"
+    assert beyond == ([says] if why else [])
+
+
 def test_a_transport_velocity_at_a_free_surface_is_warned_of(tmp_path):
     use = 'use=["transport.py"]'
     [line] = checked(tmp_path, TANK, use, "physics.transport_velocity=1.0")

@@ -110,10 +110,24 @@ class LocalPotential(NamedTuple):
         made = neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions)
         usual = self.threshold == DISORDER
         one = InDisorder(*made, UsualRoughness() if usual else OwnRoughness(0.5 / self.threshold**2))
-        if self.in_tension == 1.0 or scene.dimensions == SPATIAL or not scene.has_free_surface:
+        if self.in_tension == 1.0 or self.why_no_tension(scene):
             return one
         loose = 2.0 * LOOSE * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
         return StrongerInTension(one, self.in_tension, (self.in_tension - 1.0) / loose)
+
+    @staticmethod
+    def why_no_tension(scene: Facts) -> str:
+        """Why ``in_tension`` does nothing in a scene, in words; empty where it acts."""
+        if scene.dimensions == SPATIAL:
+            return "it acts in 2D alone"
+        return "" if scene.has_free_surface else "the fluid has no free surface"
+
+    @staticmethod
+    def warns(scene: Facts):
+        """A strength under tension that has no effect."""
+        given = scene.physics.local_potential.in_tension
+        if given != 1.0 and (why := LocalPotential.why_no_tension(scene)):
+            yield f"in_tension = {given:g} has no effect here, since {why}; leave it out"
 
     @staticmethod
     def conflicts(physics, kernel):
