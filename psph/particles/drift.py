@@ -1,5 +1,7 @@
 """How far particles have moved against each other since the lists were made."""
 
+import functools
+
 import numpy as np
 
 from psph.engine.jit import elementwise
@@ -37,11 +39,17 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
     fill_boxes(data, position, listed, coming, velocity, starts, counts[2], wide, blocks, low, high)
     # Along a line the margins repeat its ends; across lines the comparison itself wraps round.
     if periodic[2]:
-        margins = np.r_[:MARGIN, blocks + MARGIN : blocks + 2 * MARGIN]
-        images = (margins - MARGIN) % blocks + MARGIN
+        margins, images = images_of_margins(blocks)
         for ends in (low, high):
             ends[..., margins] = ends[..., images]
     return low, high
+
+
+@functools.cache
+def images_of_margins(blocks: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places of the margins of a line of so many ``blocks`` that repeats itself, and of what they show."""
+    margins = np.r_[:MARGIN, blocks + MARGIN : blocks + 2 * MARGIN]
+    return margins, (margins - MARGIN) % blocks + MARGIN
 
 
 @elementwise

@@ -18,6 +18,10 @@ from psph.particles.store import Store
 LINE = 64
 """Bytes of a cache line."""
 
+FEW, BLOCK = 4, 64
+"""Numbers that are copied at once where but some of a record are, and particles before the next few: these
+are still in the first cache.  Whole records are a third faster one by one where they come from memory."""
+
 NO_SIGN = (-1, -1)
 """Row and place of a sign, where no record has one."""
 
@@ -64,7 +68,7 @@ class Records:
         rows = [row for name in self._names for row in store.rows[name]]
         again = [name not in self._seldom for name in self._names for _ in store.rows[name]]
         self._all = np.array(rows, np.uint64), np.arange(len(rows), dtype=np.uint64)
-        self._again = tuple(numbers[again] for numbers in self._all)
+        self._again = tuple(_in_fours(numbers[again]) for numbers in self._all)
         self._folded = FLAG in names and FLAG not in placed
         self._sign = (
             (store.rows[FLAG].start, rows.index(store.rows[CARRIER].start)) if self._folded else NO_SIGN
@@ -112,7 +116,13 @@ class Records:
             whole = self.table.view(np.int32)
             in_threads(fill_fixed, first, last, *told, self._steps_per_metre, self.table, whole)
         else:
-            in_threads(fill_records, first, last, *told, self.table)
+            fill = fill_some if self._settled else fill_records
+            in_threads(fill, first, last, *told, self.table)
+
+
+def _in_fours(numbers: np.ndarray) -> np.ndarray:
+    """The ``numbers`` of rows or places, the last again until they are a multiple of FEW."""
+    return np.pad(numbers, (0, -len(numbers) % FEW), mode="edge")
 
 
 def aligned(records: int, width: int, kind) -> np.ndarray:
@@ -144,6 +154,24 @@ def fill_records(first, last, data, rows, places, flag, place, table):
         for f in range(np.uint64(len(rows))):
             table[k, places[f]] = data[rows[f], k]
         _fold(k, data, flag, place, table)
+
+
+@elementwise
+def fill_some(first, last, data, rows, places, flag, place, table):
+    """As :func:`fill_records`; ``rows`` and ``places`` come in fours."""
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    for begin in range(np.uint64(first), np.uint64(last), np.uint64(BLOCK)):
+        end = min(begin + np.uint64(BLOCK), np.uint64(last))
+        for f in range(np.uint64(0), np.uint64(len(rows)), np.uint64(FEW)):
+            of_a, of_b, of_c, of_d = rows[f], rows[f + one], rows[f + two], rows[f + three]
+            at_a, at_b, at_c, at_d = places[f], places[f + one], places[f + two], places[f + three]
+            for k in range(begin, end):
+                table[k, at_a] = data[of_a, k]
+                table[k, at_b] = data[of_b, k]
+                table[k, at_c] = data[of_c, k]
+                table[k, at_d] = data[of_d, k]
+        for k in range(begin, end):
+            _fold(k, data, flag, place, table)
 
 
 @elementwise

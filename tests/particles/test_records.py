@@ -73,3 +73,30 @@ def test_a_fluid_of_negative_density_is_no_wall(space):
     for k in range(n):
         j = fetch(records.view(), records.table, np.arange(n), k)
         assert j.is_fluid == fluid[k] and j.specific_volume == 2.0
+
+
+@pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
+@pytest.mark.parametrize(
+    "seldom", [(), ("pressure",), ("pressure", "specific_volume"), ("predicted_velocity", "pressure")]
+)
+def test_what_is_written_seldom_is_left_as_it_is(space, seldom):
+    """From three to six numbers are copied again, over more particles than a block has."""
+    rng, (store, n) = np.random.default_rng(7), (store_of(2, HELD), 150)
+    block = rng.uniform(0.5, 2.0, (7, n))
+    block[-1] = fluid = rng.integers(0, 2, n)
+    store.append(np.arange(n), 1 - fluid.astype(np.uint8), block)
+    store.reorder(np.arange(n), 0, 0)
+    records, whole = (Records(store, HELD, space, {}, names) for names in (seldom, ()))
+    for one in (records, whole):
+        one.make_room()
+    records.fill(0, n)
+    first = records.table.copy()
+    records.settle()
+    store.data[:-1, :n] *= 1.5
+    records.fill(3, n)
+    whole.fill(3, n)
+    kept = [name in seldom for name in records._names for _ in store.rows[name]]
+    assert (records.table[:3] == first[:3]).all()
+    for f, as_it_was in enumerate(kept):
+        assert (records.table[3:n, f] == (first if as_it_was else whole.table)[3:n, f]).all()
+    assert (first[3:n, :6] != whole.table[3:n, :6]).all()
