@@ -36,7 +36,7 @@ sound_speed = 30.0
 [fluids.heavy]
 shape.box = {{ lower = [0.0, 0.0], upper = [1.0, 0.4] }}
 density = 1200.0
-viscosity = 0.03
+viscosity = 0.1
 velocity = [0.5, -0.4]
 jitter = 0.2
 [fluids.light]
