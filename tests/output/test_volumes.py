@@ -92,9 +92,19 @@ frames = 0.1
 
 
 def test_what_goes_over_a_crest_is_what_particles_and_the_flow_say(tmp_path):
-    folder = tmp_path / "run"
-    run(draft(tmp_path, CREST), folder, alone(), say=lambda *_: None)
-    result = Run(folder)
+    """Particles as they are counted, on the mean of three starts that differ by rounding alone: one over the crest
+    more or less is 0.7 %."""
+    shares = []
+    for cfl in (0.5, 0.499, 0.498):
+        folder = tmp_path / f"{cfl}"
+        run(draft(tmp_path, CREST, f"time.cfl={cfl}"), folder, alone(), say=lambda *_: None)
+        last, counted = went_over(Run(folder))
+        shares.append(last / counted)
+    assert np.mean(shares) == pytest.approx(1.0, rel=0.01)
+
+
+def went_over(result):
+    """What has gone over the crest at the end by the gauge and by a count, m², where these and flows agree."""
     over, flow = result.gauges()["over"], result.gauges()["flow"]
     for k, time in enumerate(result.times):
         frame = result.frame(k)
@@ -112,6 +122,7 @@ def test_what_goes_over_a_crest_is_what_particles_and_the_flow_say(tmp_path):
     assert result.gauges()["basin"]["basin.beyond"][-1] == last
     before = result.gauges()["before"]["before.beyond"][-1]
     assert 2.0 * before + last == pytest.approx(0.4 * 0.4, rel=0.005)
+    return last, counted
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,9 @@ and S h² is 1.9 to 5.7.  The fastest wave decays at the rate 2 S h δ c.  Densi
 
 AT_REST = 1e-6
 """Least |1 − ρ₀/ρ| of a wall that bears a pressure; of a dry one it is rounding, in single precision 1e-7.
-By the density, for the pass at the middle of a step fetches no pressure; that is of a little later there, so
-the two differ where a wall begins to bear one, and below 1e-6 ρc²: 0.2 m of water at c = 1500 m/s."""
+The density tells it, for the pass at the middle of a step fetches no pressure.  In steps of two passes the
+pressure is that of a little later, so the two differ in a wall that begins to bear one; and a pressure below
+1e-6 ρc² counts as none: that of 0.2 m of water at c = 1500 m/s."""
 
 
 class DensityDiffusion(NamedTuple):

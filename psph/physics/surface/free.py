@@ -115,7 +115,7 @@ class TensionFloor(NamedTuple):
 
 
 def under_tension(scene: Facts) -> float:
-    """1 if the walls of a scene bear a tension, else 0."""
+    """1 if the walls of a scene may have a pressure below zero, else 0."""
     return float(scene.physics.tension_floor is None or not scene.has_free_surface)
 
 
