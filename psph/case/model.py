@@ -182,7 +182,7 @@ class Case(WithMatter):
     def presets(self) -> dict[str, tuple[str, Any]]:
         """Dotted keys that the case's profile or scheme sets: the name of that, and the value."""
         space, surface = self.space, self.physics.free_surface is not None
-        named = [(f"scheme {self.scheme}", scheme_keys(self.scheme, surface))]
+        named = [(f"scheme {self.scheme}", scheme_keys(self.scheme, surface, dict(space)))]
         if self.profile:
             keys = choices(self.profile, space.dimensions, space.periodic)
             named.append((f"profile {self.profile}", keys))

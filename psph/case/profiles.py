@@ -70,10 +70,11 @@ def _profile_keys(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _scheme_keys(data: Mapping[str, Any]) -> dict[str, Any]:
-    name, physics = data["scheme"], data.get("physics")
+    name, physics, space = data["scheme"], data.get("physics"), data.get("space")
     if not isinstance(name, str) or name not in SCHEMES:
         return {}
-    return scheme_keys(name, isinstance(physics, dict) and "free_surface" in physics)
+    surface = isinstance(physics, dict) and "free_surface" in physics
+    return scheme_keys(name, surface, space if isinstance(space, dict) else {})
 
 
 def _share(one: tuple, other: tuple) -> bool:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 STABLE, PLAIN, SOLID, GAS = "stable", "sph", "solid", "gas"
 
@@ -61,6 +61,28 @@ with (9), and SSPH, (13) and (15): docs/stability.md has the results of each.  T
 updated Lagrangian, with the friction and the artificial stress of Gray, Monaghan & Swift (2001), and that of
 ideal gases, with the viscosity and the conduction of Price (2012)."""
 
+PLANE = 2
+"""Dimensions in which the default scheme is fitted to h/dx."""
+
+
+class Fitting(NamedTuple):
+    """Keys that the default scheme has where h/dx is not below ``least`` and below ``most``."""
+
+    least: float
+    most: float
+    keys: dict[str, Any]
+
+
+FITTINGS = (
+    Fitting(0.0, 1.075, {"physics.local_potential": {"strength": 0.008, "threshold": 0.03}}),
+    Fitting(1.175, 1.225, {"space.kernel": "cubic"}),
+    Fitting(1.225, 1.325, {"space.kernel": "hyperbolic"}),
+    Fitting(1.425, 1.75, {"physics.local_potential": {"strength": 0.004, "threshold": 0.01}}),
+)
+"""Where still water else does not come to rest in 2D, since lattices buckle under its pressure: the kernel is
+one under which the square lattice is stable there (docs/stability.md, the map), or the potential acts in little
+disorder too."""
+
 OF_FLUIDS = tuple(name for name in SCHEMES if name not in (SOLID, GAS))
 """Those for fluids."""
 
@@ -83,7 +105,24 @@ def scheme_of(data: Mapping[str, Any]) -> Any:
     return data.get("scheme", STABLE)
 
 
-def scheme_keys(scheme: str, free_surface: bool) -> dict[str, Any]:
-    """Dotted keys and values of a scheme; ``free_surface``: the case gives eq. (14)."""
+def scheme_keys(scheme: str, free_surface: bool, space: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted keys and values of a scheme; ``free_surface``: the case gives eq. (14).
+
+    ``space``: the keys of that table which the case gives, for the default scheme is fitted to h/dx.
+    """
     keys = SCHEMES[scheme]
-    return keys | {"physics.pressure_gradient": "symmetric"} if free_surface else keys
+    if free_surface:
+        keys = keys | {"physics.pressure_gradient": "symmetric"}
+    return keys | _fitted(keys, space) if scheme == STABLE else keys
+
+
+def _fitted(keys: Mapping[str, Any], space: Mapping[str, Any]) -> dict[str, Any]:
+    """What the fitting to h/dx changes in 2D; nothing where the case gives another kernel."""
+    ratio = space.get("smoothing")
+    if not isinstance(ratio, int | float) or space.get("dimensions") != PLANE:
+        return {}
+    for one in FITTINGS:
+        if one.least <= ratio < one.most:
+            kernel = (keys | one.keys)["space.kernel"]
+            return one.keys if space.get("kernel", kernel) == kernel else {}
+    return {}

@@ -5,6 +5,13 @@ from drafts import SQUARE, draft, refusal
 from psph.case.profiles import OFF
 from psph.case.schemes import SCHEMES
 
+CUBE = """
+space = { dimensions = 3, spacing = 0.1 }
+time.end = 1.0
+physics.gravity = [0.0, 0.0, -9.8]
+fluids.water.shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.0, 0.5, 0.5] }
+"""
+
 BARE = SQUARE.replace('scheme = "sph"\n', "")
 
 
@@ -65,3 +72,37 @@ def test_ssph_has_the_pressure_gradient_that_the_paper_has_for_the_case(tmp_path
 def test_two_shifts_are_refused(tmp_path):
     [line] = refusal(tmp_path, BARE.replace("[physics]", "[physics]\nparticle_shifting = 0.1"))
     assert "physics.particle_shifting" in line and 'set it to "off"' in line
+
+
+def test_the_default_scheme_is_fitted_to_the_smoothing_length(tmp_path):
+    """In 2D, and where the case gives no other kernel; what it says of the potential wins."""
+    text = BARE.replace('kernel = "hyperbolic"\n', "")
+    potential, kernel = "physics.local_potential", "space.kernel"
+    usual = draft(tmp_path, text, "space.smoothing=1.4")
+    for ratio, key, strength, threshold in (
+        (1.0, "wendland-c2", 0.008, 0.03),
+        (1.1, "wendland-c2", 0.004, 0.2),
+        (1.2, "cubic", 0.004, 0.2),
+        (1.25, "hyperbolic", 0.004, 0.2),
+        (1.3, "hyperbolic", 0.004, 0.2),
+        (1.5, "wendland-c2", 0.004, 0.01),
+        (1.8, "wendland-c2", 0.004, 0.2),
+    ):
+        case = draft(tmp_path, text, f"space.smoothing={ratio}")
+        found = case.physics.local_potential
+        assert (case.space.kernel, found.strength, found.threshold) == (key, strength, threshold)
+        assert case.preset(potential) == case.preset(kernel) == "scheme stable"
+        assert draft(tmp_path, case.to_toml()) == case
+        given = draft(tmp_path, text, f"space.smoothing={ratio}", "space.kernel=quintic")
+        assert given.physics.local_potential == usual.physics.local_potential
+        assert given.preset(potential) == "scheme stable" and given.preset(kernel) is None
+        said = draft(tmp_path, text, f"space.smoothing={ratio}", f"{potential}.strength=0.1")
+        assert said.physics.local_potential.strength == 0.1
+        assert said.physics.local_potential.threshold == threshold
+    plain = draft(tmp_path, text, "space.smoothing=1.3", "scheme=sph")
+    assert plain.space.kernel == "cubic" and plain.physics.local_potential is None
+
+
+def test_it_is_not_fitted_in_3d(tmp_path):
+    case = draft(tmp_path, CUBE, "space.smoothing=1.2")
+    assert case.space.kernel == "wendland-c2" and case.physics.local_potential.threshold == 0.2

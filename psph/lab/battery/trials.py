@@ -20,6 +20,7 @@ CONTROLS: dict[str, tuple[str, ...]] = {
     "surface 1.3": ("scheme=ssph", "space.smoothing=1.3", "physics.free_surface=0.9"),
     "bare 1.2": (
         "space.smoothing=1.2",
+        "space.kernel=wendland-c2",
         "physics.local_potential=0",
         "physics.reconstructed_damping=0",
         "physics.impact_damping=0",
