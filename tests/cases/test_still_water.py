@@ -1,7 +1,11 @@
-"""Still water in an open tank: the bias that correction removes."""
+"""Still water in an open tank: the bias that correction removes, and other smoothing lengths."""
 
 import pytest
 from cases.measures import checkerboard, finished, window
+from long import long_but_for
+
+from psph.case import load
+from psph.lab.battery.measures import measure
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -42,3 +46,26 @@ def test_plain_sph_is_not(still):
     )
     bias = window(run.probes(), "P1.pressure", 0.5, 1.5).mean() / 3920.0 - 1.0
     assert 0.0105 < bias < 0.015
+
+
+def unrest(folder, *sets):
+    """How far the tank of the battery is off after 6 s: probes from theory; their spread, Pa; the noise."""
+    sets = ("time.end=6.0", "output.frames=1.0", "output.log=0.05", *sets)
+    finished("hard/tank", folder, *sets)
+    found = measure(folder, load("run/cases/hard/tank.toml", sets), 3.13)
+    return found["probe_error"], found["probe_spread"], found["noise"]
+
+
+@pytest.mark.parametrize("ratio", long_but_for(["1.2"], [1.0, 1.05, 1.2, 1.25, 1.3, 1.35, 1.5, 1.6, 1.7]))
+def test_it_comes_to_rest_at_other_smoothing_lengths(ratio, tmp_path):
+    """Within the bounds of the battery."""
+    error, spread, noise = unrest(tmp_path / "fitted", f"space.smoothing={ratio}")
+    assert error < 0.005 and spread < 5.0 and noise < 0.005
+
+
+@pytest.mark.parametrize("ratio", long_but_for(["1.2"], [1.0, 1.05, 1.2, 1.25, 1.3, 1.5, 1.6]))
+def test_with_the_keys_of_1_4_it_does_not(ratio, tmp_path):
+    """The control."""
+    usual = ("physics.local_potential={strength=0.004, threshold=0.2}", "space.kernel=wendland-c2")
+    error, spread, noise = unrest(tmp_path / "usual", f"space.smoothing={ratio}", *usual)
+    assert error > 0.0055 or spread > 6.0 or noise > 0.0055

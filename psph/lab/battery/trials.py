@@ -152,8 +152,7 @@ CALM = (Bound("speed", most=1.0), Bound("late_speed", most=1e-9))
 ORDER = (Bound("near_5", least=0.6), Bound("speed", most=2.0))
 
 LEFT_OF_A_SWING = Bound("swing", least=0.9)
-"""Without friction a drop swings for ever.  After four periods a user shall see it swing as at the
-start, but for a tenth."""
+"""Without friction a drop swings for ever: after four periods nine tenths as fast as at the start."""
 
 LEFT_OF_THE_VORTICES = Bound("energy_left", 0.95, 1.05)
 """Over what the exact solution has: who simulates vortices wants to read their decay to a twentieth."""
