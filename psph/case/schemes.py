@@ -75,13 +75,17 @@ class Fitting(NamedTuple):
 
 FITTINGS = (
     Fitting(0.0, 1.075, {"physics.local_potential": {"strength": 0.008, "threshold": 0.03}}),
-    Fitting(1.175, 1.225, {"space.kernel": "cubic"}),
+    Fitting(
+        1.175,
+        1.225,
+        {"space.kernel": "cubic", "physics.local_potential": {"strength": 0.004, "threshold": 0.05}},
+    ),
     Fitting(1.225, 1.325, {"space.kernel": "hyperbolic"}),
     Fitting(1.425, 1.75, {"physics.local_potential": {"strength": 0.004, "threshold": 0.01}}),
 )
 """Where still water else does not come to rest in 2D, since lattices buckle under its pressure: the kernel
 is one under which the square lattice is stable there (docs/stability.md, the map), or the potential acts in
-little disorder too."""
+little disorder too, or both."""
 
 OF_FLUIDS = tuple(name for name in SCHEMES if name not in (SOLID, GAS))
 """Those for fluids."""

@@ -82,7 +82,7 @@ def test_the_default_scheme_is_fitted_to_the_smoothing_length(tmp_path):
     for ratio, key, strength, threshold in (
         (1.0, "wendland-c2", 0.008, 0.03),
         (1.1, "wendland-c2", 0.004, 0.2),
-        (1.2, "cubic", 0.004, 0.2),
+        (1.2, "cubic", 0.004, 0.05),
         (1.25, "hyperbolic", 0.004, 0.2),
         (1.3, "hyperbolic", 0.004, 0.2),
         (1.5, "wendland-c2", 0.004, 0.01),

@@ -49,7 +49,7 @@ def test_plain_sph_is_not(still):
 
 
 def unrest(folder, *sets):
-    """How far the tank of the battery is off after 6 s: probes from theory; their spread, Pa; the noise."""
+    """How far the tank of the battery is off, after 6 s if ``sets`` say no other end: probes from theory; their spread, Pa; the noise."""
     sets = ("time.end=6.0", "output.frames=1.0", "output.log=0.05", *sets)
     finished("hard/tank", folder, *sets)
     found = measure(folder, load("run/cases/hard/tank.toml", sets), 3.13)
@@ -69,3 +69,12 @@ def test_with_the_keys_of_1_4_it_does_not(ratio, tmp_path):
     usual = ("physics.local_potential={strength=0.004, threshold=0.2}", "space.kernel=wendland-c2")
     error, spread, noise = unrest(tmp_path / "usual", f"space.smoothing={ratio}", *usual)
     assert error > 0.0055 or spread > 6.0 or noise > 0.0055
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("ratio", [1.2, 1.3])
+def test_it_comes_to_rest_after_a_fall_too(ratio, tmp_path):
+    """From uniform density it swings first, for some seconds."""
+    sets = (f"space.smoothing={ratio}", "fluids.water.pressure=0", "time.end=20.0")
+    error, spread, noise = unrest(tmp_path / "fitted", *sets)
+    assert error < 0.01 and spread < 5.0 and noise < 0.005
