@@ -49,7 +49,8 @@ def test_plain_sph_is_not(still):
 
 
 def unrest(folder, *sets):
-    """How far the tank of the battery is off, after 6 s if ``sets`` say no other end: probes from theory; their spread, Pa; the noise."""
+    """How far the tank of the battery is off, after 6 s if ``sets`` say no other end: probes from theory;
+    their spread, Pa; the noise."""
     sets = ("time.end=6.0", "output.frames=1.0", "output.log=0.05", *sets)
     finished("hard/tank", folder, *sets)
     found = measure(folder, load("run/cases/hard/tank.toml", sets), 3.13)
