@@ -74,7 +74,7 @@ class Fitting(NamedTuple):
 
 
 FITTINGS = (
-    Fitting(0.0, 1.075, {"physics.local_potential": {"strength": 0.008, "threshold": 0.03}}),
+    Fitting(0.0, 1.075, {"physics.local_potential": {"strength": 0.016, "threshold": 0.03}}),
     Fitting(
         1.175,
         1.225,

@@ -80,7 +80,7 @@ def test_the_default_scheme_is_fitted_to_the_smoothing_length(tmp_path):
     potential, kernel = "physics.local_potential", "space.kernel"
     usual = draft(tmp_path, text, "space.smoothing=1.4")
     for ratio, key, strength, threshold in (
-        (1.0, "wendland-c2", 0.008, 0.03),
+        (1.0, "wendland-c2", 0.016, 0.03),
         (1.1, "wendland-c2", 0.004, 0.2),
         (1.2, "cubic", 0.004, 0.05),
         (1.25, "hyperbolic", 0.004, 0.2),
