@@ -83,8 +83,8 @@ FITTINGS = (
     Fitting(1.225, 1.325, {"space.kernel": "hyperbolic"}),
     Fitting(1.425, 1.75, {"physics.local_potential": {"strength": 0.004, "threshold": 0.01}}),
 )
-"""Without these still water does not come to rest in 2D, since lattices buckle under its pressure.  Either the
-square lattice is stable under the kernel (docs/stability.md, the map), or the potential acts in little
+"""Without these still water does not come to rest in 2D, since lattices buckle under its pressure.  Either
+the square lattice is stable under the kernel (docs/stability.md, the map), or the potential acts in little
 disorder too, or both (docs/scheme.md, Other h/dx)."""
 
 OF_FLUIDS = tuple(name for name in SCHEMES if name not in (SOLID, GAS))
