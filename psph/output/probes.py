@@ -258,5 +258,5 @@ def weigh_near(first, last, around, view, group, fluid, data, wet, rows, near, t
             for m in range(len(rows)):
                 terms[count, m + 2] = share * data[rows[m], k]
             near[count] = k
-            count += 1
+            count += share > 0.0  # how finely a sum is rounded goes by the number of its terms
     return count

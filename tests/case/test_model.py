@@ -49,7 +49,7 @@ def test_what_needs_the_particles_stays_open(tmp_path):
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_kernel_that_is_not_given_is_that_of_the_scheme(tmp_path, scheme):
     silent = WATER.replace('kernel = "hyperbolic"\n', "")
-    kernel = draft(tmp_path, silent, f"scheme={scheme}").space.kernel
+    kernel = draft(tmp_path, silent, f"scheme={scheme}", "space.smoothing=1.4").space.kernel
     assert kernel == SCHEMES[scheme]["space.kernel"]
 
 

@@ -187,6 +187,11 @@ MIDWAY = {512: {2: 140, 3: 186}, 256: {2: 142, 3: 176}}
 """The same of the pass at the middle of a step of the default scheme, for what moves freely, by dimension."""
 
 
+ASTRAY = {512: {DEFAULT}, 256: {USUAL, DEFAULT}}
+"""Whose loops, as numba compiles them, cross a cache line on their way to the stack: with 16 registers, as
+256 bits bring them, plain SPH too."""
+
+
 REGISTERS = {512: "zmm", 256: "ymm"}
 """How assembly calls the widest registers, by their bits."""
 
@@ -220,7 +225,7 @@ def test_the_standard_loops_take_no_more_instructions_than_counted(dim, setting,
         patch.setattr(Library, "add_ir_module", JITCodeLibrary.add_ir_module)
         lines = innermost(compiled_for(pushed))
     astray = [one for one in lines if re.match(r"vmovu.*%rsp\)", one)]
-    assert bool(astray) == (setting == DEFAULT)
+    assert bool(astray) == (setting in ASTRAY[register_bits()])
 
 
 def compiled_for(call) -> str:
