@@ -1,6 +1,7 @@
 """Schemes: numerical choices under one name, for the keys that a case does not give itself."""
 
 import json
+import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -61,31 +62,42 @@ with (9), and SSPH, (13) and (15): docs/stability.md has the results of each.  T
 updated Lagrangian, with the friction and the artificial stress of Gray, Monaghan & Swift (2001), and that of
 ideal gases, with the viscosity and the conduction of Price (2012)."""
 
-PLANE = 2
-"""Dimensions in which the default scheme is fitted to h/dx."""
+
+class Ratios(NamedTuple):
+    """Some h/dx in so many ``dimensions``: not below ``least``, and below ``most``."""
+
+    dimensions: int
+    least: float
+    most: float
+
+    def hold(self, dimensions: Any, ratio: float) -> bool:
+        """Whether this one is among them."""
+        return dimensions == self.dimensions and self.least <= ratio < self.most
 
 
 class Fitting(NamedTuple):
-    """Keys that the default scheme has where h/dx is not below ``least`` and below ``most``."""
+    """``keys`` that the default scheme has at these ``ratios``."""
 
-    least: float
-    most: float
+    ratios: Ratios
     keys: dict[str, Any]
 
 
 FITTINGS = (
-    Fitting(0.0, 1.075, {"physics.local_potential": {"strength": 0.016, "threshold": 0.03}}),
+    Fitting(Ratios(2, 0.0, 1.075), {"physics.local_potential": {"strength": 0.016, "threshold": 0.03}}),
     Fitting(
-        1.175,
-        1.225,
+        Ratios(2, 1.175, 1.225),
         {"space.kernel": "cubic", "physics.local_potential": {"strength": 0.004, "threshold": 0.05}},
     ),
-    Fitting(1.225, 1.325, {"space.kernel": "hyperbolic"}),
-    Fitting(1.425, 1.75, {"physics.local_potential": {"strength": 0.004, "threshold": 0.01}}),
+    Fitting(Ratios(2, 1.225, 1.325), {"space.kernel": "hyperbolic"}),
+    Fitting(Ratios(2, 1.425, 1.75), {"physics.local_potential": {"strength": 0.004, "threshold": 0.01}}),
+    Fitting(Ratios(3, 1.275, 1.375), {"space.kernel": "hyperbolic"}),
 )
-"""Without these still water does not come to rest in 2D, since lattices buckle under its pressure.  Either
-the square lattice is stable under the kernel (docs/stability.md, the map), or the potential acts in little
-disorder too, or both (docs/scheme.md, Other h/dx)."""
+"""Without these still water does not come to rest, since lattices buckle under its pressure.  Either the
+square, or in 3D the cubic lattice is stable under the kernel (docs/stability.md, the map), or the potential
+acts in little disorder too, or both (docs/scheme.md, Other h/dx)."""
+
+RESTLESS = (Ratios(2, 1.075, 1.175), Ratios(3, 1.05, 1.275), Ratios(3, 1.525, math.inf))
+"""Where nothing was found under which still water comes to rest, and it boils."""
 
 OF_FLUIDS = tuple(name for name in SCHEMES if name not in (SOLID, GAS))
 """Those for fluids."""
@@ -121,12 +133,12 @@ def scheme_keys(scheme: str, free_surface: bool, space: Mapping[str, Any]) -> di
 
 
 def _fitted(keys: Mapping[str, Any], space: Mapping[str, Any]) -> dict[str, Any]:
-    """What the fitting to h/dx changes in 2D; nothing where the case gives another kernel."""
+    """What the fitting to h/dx changes; nothing where the case gives another kernel."""
     ratio = space.get("smoothing")
-    if not isinstance(ratio, int | float) or space.get("dimensions") != PLANE:
+    if not isinstance(ratio, int | float):
         return {}
     for one in FITTINGS:
-        if one.least <= ratio < one.most:
+        if one.ratios.hold(space.get("dimensions"), ratio):
             kernel = (keys | one.keys)["space.kernel"]
             return one.keys if space.get("kernel", kernel) == kernel else {}
     return {}

@@ -75,7 +75,7 @@ def test_two_shifts_are_refused(tmp_path):
 
 
 def test_the_default_scheme_is_fitted_to_the_smoothing_length(tmp_path):
-    """In 2D, and where the case gives no other kernel; what it says of the potential wins."""
+    """Where the case gives no other kernel; what it says of the potential wins."""
     text = BARE.replace('kernel = "hyperbolic"\n', "")
     potential, kernel = "physics.local_potential", "space.kernel"
     usual = draft(tmp_path, text, "space.smoothing=1.4")
@@ -103,6 +103,14 @@ def test_the_default_scheme_is_fitted_to_the_smoothing_length(tmp_path):
     assert plain.space.kernel == "cubic" and plain.physics.local_potential is None
 
 
-def test_it_is_not_fitted_in_3d(tmp_path):
-    case = draft(tmp_path, CUBE, "space.smoothing=1.2")
-    assert case.space.kernel == "wendland-c2" and case.physics.local_potential.threshold == 0.2
+def test_in_3d_another_kernel_is_enough(tmp_path):
+    """And nothing else helps at other ratios."""
+    for ratio, kernel in (
+        (1.0, "wendland-c2"),
+        (1.2, "wendland-c2"),
+        (1.3, "hyperbolic"),
+        (1.35, "hyperbolic"),
+    ):
+        case = draft(tmp_path, CUBE, f"space.smoothing={ratio}")
+        assert case.space.kernel == kernel and case.preset("space.kernel") == "scheme stable"
+        assert case.physics.local_potential.threshold == 0.2

@@ -369,6 +369,25 @@ def test_a_slow_sound_is_warned_of(tmp_path):
     assert checked(tmp_path, WATER, "physics.sound_speed=31.4") == []
 
 
+def test_a_smoothing_length_at_which_water_boils_is_warned_of(tmp_path):
+    """Under the default scheme, where the case does not say how else particles are to be held."""
+    bare = WATER.replace('kernel = "hyperbolic"\n', "")
+    [line] = checked(tmp_path, bare, "scheme=stable", "space.smoothing=1.1")
+    assert line == (
+        "case.toml: space.smoothing: still water does not come to rest at 1.1 under the default scheme, since "
+        "its particles leave their lattice; give 1.4, or 1.3 for fewer neighbours"
+    )
+    for more in (
+        "space.smoothing=1.2",
+        "space.kernel=quintic",
+        "scheme=sph",
+        "physics.local_potential.strength=0.03",
+    ):
+        assert checked(tmp_path, bare, "scheme=stable", "space.smoothing=1.1", more) == []
+    weightless = ("physics.gravity=[0.0, 0.0]", "physics.sound_speed=10.0")
+    assert checked(tmp_path, bare, "scheme=stable", "space.smoothing=1.1", *weightless) == []
+
+
 def test_a_large_jitter_is_warned_of(tmp_path):
     assert checked(tmp_path, WATER, "fluids.water.jitter=0.6") == [
         "case.toml: fluids.water.jitter: 0.6 spacings let neighbours change places; give at most 0.5"

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from itertools import product
 
+from psph.case.schemes import RESTLESS, STABLE
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.scene.fluid.density_ratios import several_fluids
 from psph.scene.fluid.rheologies import rheology_warnings
@@ -89,6 +90,18 @@ def _slow_sound(scene: Scene) -> Iterator[str]:
         )
 
 
+def _restless(scene: Scene) -> Iterator[str]:
+    """The default scheme at an h/dx at which heavy water does not come to rest."""
+    case, ratio = scene.case, scene.case.space.smoothing
+    fitted = all(map(case.preset, ("space.kernel", "physics.local_potential")))
+    boils = case.scheme == STABLE and any(one.hold(scene.dimensions, ratio) for one in RESTLESS)
+    if fitted and boils and any(scene.gravity) and any(part.flows for part in scene.layout.parts):
+        yield (
+            f"space.smoothing: still water does not come to rest at {ratio:g} under the default "
+            "scheme, since its particles leave their lattice; give 1.4, or 1.3 for fewer neighbours"
+        )
+
+
 def _off_slopes(scene: Scene) -> Iterator[str]:
     """A line for each run-up whose foot is near nothing that water may run up."""
     slopes = [part.name for part in scene.layout.parts if part.name not in scene.case.fluids]
@@ -116,6 +129,7 @@ ALL = (
     start_warnings,
     _minimum_in_disorder,
     _slow_sound,
+    _restless,
     driven_flow,
     unbearing_warnings,
     inside_walls,
