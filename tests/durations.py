@@ -1,9 +1,10 @@
-"""How long each test takes, and which ones `run/tests` therefore leaves to `run/tests --all`.
+"""How long each test takes, and which ones `run/tests` therefore leaves to `run/tests --all` or `--long`.
 
 ``durations.csv`` beside this file has the tests of ``LONGEST`` s and more, with the seconds of their setup and
 of themselves on one core, nothing to compile.  Those get the mark ``slow``, unless they bear ``core``: each kind
 of matter keeps its scenes in the short suite.  A fixture that several tests share makes all of them slow:
-whichever comes first would wait for it.
+whichever comes first would wait for it.  Those of ``LONGEST_LANDING`` s and more get the mark ``long`` too, but
+for tests of several ranks or of signals (``mpi``, ``alone``) and those that bear ``core`` or ``landing``.
 
     python tests/durations.py FILE    writes the table anew from what `run/tests --all` has left
 """
@@ -21,6 +22,12 @@ TABLE = Path(__file__).with_name("durations.csv")
 LONGEST = 2.0
 """Seconds that a test of the short suite may take."""
 
+LONGEST_LANDING = 12.0
+"""Seconds that a test may take of those that have to pass before a change lands."""
+
+STAY = ("core", "landing", "mpi", "alone")
+"""Marks of tests that are run before a change lands however long they take."""
+
 FILE = "PSPH_DURATIONS"
 """The variable that names the file for the seconds of all tests of a session; without it none is written."""
 
@@ -33,7 +40,7 @@ def read(path):
 
 @pytest.hookimpl(tryfirst=True)  # before -m looks at the marks
 def pytest_collection_modifyitems(items):
-    """Give the slow ones their mark."""
+    """Give the slow and the long ones their marks."""
     known = read(TABLE) if TABLE.exists() else {}
     waited = defaultdict(set)
     for item in items:
@@ -43,6 +50,10 @@ def pytest_collection_modifyitems(items):
         slow = sum(known.get(item.nodeid, (0.0, 0.0))) >= LONGEST or _shared(item) & waited[item.path]
         if slow and not item.get_closest_marker("core"):
             item.add_marker("slow")
+        if sum(known.get(item.nodeid, (0.0, 0.0))) >= LONGEST_LANDING and not any(
+            map(item.get_closest_marker, STAY)
+        ):
+            item.add_marker("long")
 
 
 def _shared(item):
@@ -94,10 +105,12 @@ def main(arguments):
     except (OSError, ValueError) as error:
         print(f"{arguments[0]}: {error}; give what `run/tests --all` has left", file=sys.stderr)
         return 2
-    slow = {test: both for test, both in rows.items() if sum(both) >= LONGEST}
+    # The long ones were not run: what is known of them stays.
+    known = {test: both for test, both in read(TABLE).items() if sum(both) >= LONGEST_LANDING}
+    slow = {test: both for test, both in (known | rows).items() if sum(both) >= LONGEST}
     with open(TABLE, "w", newline="", encoding="utf-8") as file:
         csv.writer(file, lineterminator="\n").writerows([test, *both] for test, both in sorted(slow.items()))
-    print(f"{len(slow)} of {len(rows)} tests take {LONGEST:g} s or more: {TABLE}")
+    print(f"{len(slow)} of {len(known | rows)} tests take {LONGEST:g} s or more: {TABLE}")
     return 0
 
 

@@ -72,6 +72,7 @@ def test_generated_pages_stand_beside_the_committed_ones(pages):
     assert made == {case.with_suffix(".md") for case in cases} | {Path("index.md")}
 
 
+@pytest.mark.landing
 def test_every_page_is_there_and_is_found(site, pages):
     names = navigation.pages_of(pages)
     assert all((site / f"{name}.html").exists() for name in names) and len(names) > 100

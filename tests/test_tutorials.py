@@ -48,6 +48,7 @@ def run(command, folder):
     )
 
 
+@pytest.mark.landing
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("page", long_but_for(SHORT, PAGES, lambda page: page.stem), ids=lambda p: p.stem)
 def test_a_tutorial_works_as_written(page, tmp_path):

@@ -169,6 +169,7 @@ def run(case, ranks, folder, *overrides):
 SHORT = ("dam_break",)
 
 
+@pytest.mark.landing
 @pytest.mark.parametrize("case", long_but_for(SHORT, END))
 def test_same_bits_on_any_number_of_ranks(case, tmp_path):
     results = {n: run(case, n, tmp_path / str(n)) for n in (1, 2, 3, 4)}

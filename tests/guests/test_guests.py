@@ -67,6 +67,7 @@ def begin(path):
 STEPS = 24
 
 
+@pytest.mark.landing
 @pytest.mark.parametrize(
     "guests",
     long_but_for((tuple(GUESTS),), [tuple(GUESTS), *((name,) for name in GUESTS)], tuple),

@@ -34,6 +34,7 @@ def told(folder, steps):
     return [json.loads(line) for line in job.stdout.splitlines()]
 
 
+@pytest.mark.landing
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("name", long_but_for(SHORT, FAMILIES))
 def test_same_bits_however_it_is_run(name, tmp_path):
